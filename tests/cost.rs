@@ -2,6 +2,7 @@
 
 mod budget;
 mod cached;
+mod files;
 mod offline;
 
 use std::path::Path;
@@ -33,6 +34,11 @@ pub fn tests() -> Vec<Trial> {
         Trial::test("cost::missing_programs", offline::missing_programs),
         Trial::test("cost::mali_is_called", offline::mali_is_called),
         Trial::test("cost::bad_reports", offline::bad_reports),
+        Trial::test("cost::more_lamps_cost_more", files::lamps),
+        Trial::test("cost::guards_cost", files::guards),
+        Trial::test("cost::turns_of_unknown_loops", files::turns),
+        Trial::test("cost::modules_as_their_texts", files::modules),
+        Trial::test("cost::foreign_modules", files::foreign_modules),
         Trial::test("cost::wrong_names", wrong_names),
         Trial::test("cost::without_a_driver", without_a_driver),
     ]

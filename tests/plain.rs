@@ -36,10 +36,10 @@ pub fn tests() -> Vec<Trial> {
 
 /// The GPU whose figures are compared.
 const GPU: &str = "navi21";
-/// Guards may cost this share of the inverse throughput ...
+/// Guards may cost this share of the cycles ...
 const SHARE: f64 = 0.1;
-/// ... or so many instructions, whichever is more.
-const INSTRUCTIONS: i64 = 2;
+/// ... or so many cycles, whichever is more.
+const CYCLES: i64 = 2;
 /// How far two values of one formula may be from each other: the plain text may lose digits by
 /// cancellation.
 const TOLERANCE: f64 = 2e-4;
@@ -217,7 +217,7 @@ fn are_close(one: &str, other: &str) -> bool {
     one.split(' ').count() == other.split(' ').count() && words().all(close)
 }
 
-/// Inverse throughput and instructions.
+/// Cycles of vector instructions on the dearest and on the cheapest path.
 type Figures = (i64, i64);
 
 /// The driver, and the figures by the name of what was measured.
@@ -229,7 +229,7 @@ fn measured(arguments: &[&str]) -> Result<(String, BTreeMap<String, Figures>), F
     let figure = |object: &Value, name: &str| object["net"][name].as_i64().unwrap_or_default();
     let one = |object: &Value| {
         let name = object["name"].as_str().unwrap_or_default().to_owned();
-        (name, (figure(object, "inverse_throughput"), figure(object, "instructions")))
+        (name, (figure(object, "cycles"), figure(object, "least_cycles")))
     };
     Ok((driver.to_owned(), found.iter().map(one).collect()))
 }
@@ -247,9 +247,18 @@ fn measured_plain() -> Result<BTreeMap<String, Figures>, Failed> {
     Ok(figures.into_iter().map(|(name, figures)| (path(&name), figures)).collect())
 }
 
-fn is_dear((throughput, instructions): Figures, plain: Figures) -> bool {
-    let share = (throughput - plain.0) as f64 > SHARE * plain.0 as f64;
-    share && instructions - plain.1 > INSTRUCTIONS
+/// Whether the dearest path through the guards costs more than a little.
+fn is_dear((cycles, _): Figures, (plain, _): Figures) -> bool {
+    (cycles - plain) as f64 > SHARE * plain as f64 && cycles - plain > CYCLES
+}
+
+fn geometric_mean(ratios: &[f64]) -> f64 {
+    (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len().max(1) as f64).exp()
+}
+
+/// The cycles of all paths: `26`, or `9 to 26`.
+fn written_range((most, least): Figures) -> String {
+    if most == least { most.to_string() } else { format!("{least} to {most}") }
 }
 
 /// A function whose guards cost more than a little says why, and no other does. `docs/costs.md` is
@@ -265,7 +274,7 @@ fn what_guards_cost() -> Outcome {
         return Ok(());
     }
     let plain = measured_plain()?;
-    let (mut rows, mut wrong) = (String::new(), Vec::new());
+    let (mut rows, mut wrong, mut ratios) = (String::new(), Vec::new(), Vec::new());
     for (path, item) in plain_functions()? {
         let (with, without) = (library.get(&path), plain.get(&path));
         let (with, without) =
@@ -276,19 +285,17 @@ fn what_guards_cost() -> Outcome {
             (false, Some(_)) => wrong.push(format!("`{path}` is cheap, and has a `Reason:`")),
             _ => {}
         }
-        let (throughput, instructions) = (with.0 - without.0, with.1 - without.1);
-        writeln!(
-            rows,
-            "| `{path}` | {}, {} | {}, {} | {throughput:+}, {instructions:+} | {} |",
-            with.0,
-            with.1,
-            without.0,
-            without.1,
-            reason.unwrap_or_default()
-        )?;
+        let [library, plain] = [*with, *without].map(written_range);
+        let ratio = with.0 as f64 / without.0.max(1) as f64;
+        ratios.push(ratio);
+        let reason = reason.unwrap_or_default();
+        writeln!(rows, "| `{path}` | {library} | {plain} | {ratio:.2} | {reason} |")?;
     }
     let head = std::fs::read_to_string(folder().join("page.md"))?;
     let head = rest::filled(&head)?;
+    let head = head
+        .replace("{mean}", &format!("{:.2}", geometric_mean(&ratios)))
+        .replace("{worst}", &format!("{:.2}", ratios.iter().copied().fold(0.0, f64::max)));
     let text = head.replace("{driver}", &driver).replace("{gpu}", GPU).replace("{rows}", &rows);
     if is_updated {
         std::fs::write(&page, &text)?;

@@ -15,6 +15,7 @@ mod migrate;
 mod packages;
 mod render;
 mod scale;
+mod shaders;
 mod site;
 
 use std::error::Error;
@@ -33,6 +34,7 @@ const BENCHMARKS: &[Benchmark] = &[
     ("migrate", migrate::run),
     ("render", render::run),
     ("scale", scale::run),
+    ("shaders", shaders::run),
     ("site", site::run),
 ];
 

@@ -254,6 +254,11 @@ impl InputArguments {
         Ok((composed, ErrorContext { graph, settings, options, conventions, permutation }))
     }
 
+    /// Whether the language of a text is told.
+    pub fn names_language(&self) -> bool {
+        self.lang.is_some() || self.stage.is_some()
+    }
+
     /// The language asked for.
     pub fn chosen_language(&self) -> Option<Language> {
         self.lang.map(Language::from)

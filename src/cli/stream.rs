@@ -25,6 +25,14 @@ fn is_open_already(path: &Path) -> bool {
 
 /// Reads the text of a stream. It may be as long as a file may be.
 pub fn read_stream(path: &Path) -> Result<String, Failure> {
+    String::from_utf8(read_stream_bytes(path)?).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Failure::input(format!("`{}` is not UTF-8: byte {at} is wrong", path.display()))
+    })
+}
+
+/// Reads the bytes of a stream.
+pub fn read_stream_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     let most = LIMITS.file_bytes as u64;
     let mut bytes = Vec::new();
     if path.as_os_str() == STANDARD_INPUT {
@@ -48,10 +56,7 @@ pub fn read_stream(path: &Path) -> Result<String, Failure> {
             format!("`{}` has more than the {most} bytes that are allowed", path.display());
         return Err(Failure::input(message));
     }
-    String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        Failure::input(format!("`{}` is not UTF-8: byte {at} is wrong", path.display()))
-    })
+    Ok(bytes)
 }
 
 /// The name of a stream's module in its package, from which the composer takes the stage of GLSL.

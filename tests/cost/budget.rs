@@ -97,7 +97,15 @@ pub fn record_is_current() -> Outcome {
         let (name, gpu) = (object["name"].as_str(), object["gpu"].as_str());
         let at = recorded.gpus.iter().position(|chip| Some(chip.name.as_str()) == gpu);
         let row = at.and_then(|at| recorded.functions.get(name?)?.get(at));
-        let keys = ["instructions", "vgprs", "latency", "inverse_throughput"];
+        let keys = [
+            "cycles",
+            "least_cycles",
+            "transcendental",
+            "texture",
+            "vgprs",
+            "instructions",
+            "open_loops",
+        ];
         let keys = keys.map(|key| object["net"][key].as_i64());
         if row.map(|row| row.map(Some)) != Some(keys) {
             let text = format!("{name:?} on {gpu:?}: recorded {row:?}, measured {keys:?}");

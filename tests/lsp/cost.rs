@@ -17,8 +17,8 @@ pub fn recorded() -> Outcome {
     let row = |axis: &str, value: &str, figure: i64| {
         format!(
             "{{ program = \"lamp\", axis = \"{axis}\", value = \"{value}\", stage = \"fragment\", \
-             pairs = 2, instructions = [{figure}, {figure}, {figure}], vgprs = 0, waves = [32, 32], \
-             inverse_throughput = 0 }}"
+             pairs = 2, cycles = [{figure}, {figure}, {figure}], texture = 0, \
+             instructions = {figure}, vgprs = 0, waves = [32, 32] }}"
         )
     };
     let record = format!(

@@ -1,4 +1,4 @@
-//! Where the inverse throughput of `forward` goes: how far the sum over its covering set falls if
+//! Where the cycles of `forward` go: how far the sum over its covering set falls if
 //! functions of the library do nothing.
 
 use std::collections::BTreeMap;
@@ -68,7 +68,7 @@ fn recorded_sum() -> Result<(i64, usize), Failed> {
     let budget: Value = serde_json::from_str(&std::fs::read_to_string(path)?)?;
     let costs = budget["costs"].as_object().ok_or("no costs are recorded")?;
     let own = costs.iter().filter(|(name, _)| name.starts_with("forward "));
-    let sum = own.clone().filter_map(|(_, figures)| figures["inverse_throughput"].as_i64()).sum();
+    let sum = own.clone().filter_map(|(_, figures)| figures["cycles"].as_i64()).sum();
     let count = own.filter(|(name, _)| name.ends_with(" fragment")).count();
     Ok((sum, count))
 }
@@ -78,7 +78,7 @@ fn measured_sum(arguments: &[&str]) -> Result<i64, Failed> {
     let cover = ["cost", "--cover", "--program", "forward", "--gpu", GPU, "--json"];
     let found: Vec<Value> =
         serde_json::from_str(&lamplight(&[&cover[..], arguments].concat(), "")?)?;
-    Ok(found.iter().filter_map(|one| one["figures"]["inverse_throughput"].as_i64()).sum())
+    Ok(found.iter().filter_map(|one| one["figures"]["cycles"].as_i64()).sum())
 }
 
 /// The text, with the body of a function replaced.

@@ -52,7 +52,7 @@ const COMMANDS: &[XtaskCommand] = &[
     ),
     (
         "bench",
-        "measure, and compare with peers where there are any: compose, eval, gen, load, lsp, migrate, render, scale or site",
+        "measure, and compare with peers where there are any: compose, eval, gen, load, lsp, migrate, render, scale, shaders [FOLDER] or site",
         bench::run,
     ),
     (

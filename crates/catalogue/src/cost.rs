@@ -17,10 +17,11 @@ use lamplight_diagnostic::source::{self, Embedded, Package, SourceSet};
 pub const PATH: &str = "costs.toml";
 
 /// Headings of a function's figures, in the order of [`Costs::functions`].
-pub const FIGURES: [&str; 4] = ["instructions", "VGPRs", "latency", "inverse throughput"];
+pub const FIGURES: [&str; 7] =
+    ["cycles", "at least", "transcendental", "textures", "VGPRs", "instructions", "open loops"];
 
 /// The index of the figure by which functions are sorted.
-pub const SORTED_BY: usize = 3;
+pub const SORTED_BY: usize = 0;
 
 /// The GPU that tables show if they have room for only one.
 pub const SHOWN: &str = "navi21";
@@ -61,14 +62,16 @@ pub struct AxisCost {
     pub stage: Stage,
     /// Pairs of permutations that differ only in the axis.
     pub pairs: usize,
-    /// The smallest change, the median, and the largest.
-    pub instructions: [i64; 3],
+    /// The change of the cycles of vector instructions: the smallest, the median, and the largest.
+    pub cycles: [i64; 3],
+    /// The median change of the reads of textures.
+    pub texture: i64,
+    /// The median change of the number of instructions.
+    pub instructions: i64,
     /// The median change.
     pub vgprs: i64,
     /// Waves on a SIMD with the default and with the value, of the median pair.
     pub waves: [i64; 2],
-    /// The median change.
-    pub inverse_throughput: i64,
 }
 
 impl Costs {
@@ -112,12 +115,12 @@ impl Costs {
 
 impl AxisCost {
     fn fields(&self) -> String {
-        let Self { pairs, instructions, vgprs, waves, inverse_throughput, .. } = self;
+        let Self { pairs, cycles, texture, instructions, vgprs, waves, .. } = self;
         let stage = self.stage.name();
         format!(
             "program = {}, axis = {}, value = {}, stage = {}, pairs = {pairs}, \
-             instructions = {instructions:?}, vgprs = {vgprs}, waves = {waves:?}, \
-             inverse_throughput = {inverse_throughput}",
+             cycles = {cycles:?}, texture = {texture}, instructions = {instructions}, \
+             vgprs = {vgprs}, waves = {waves:?}",
             toml_string(&self.program),
             toml_string(&self.axis),
             toml_string(&self.value),

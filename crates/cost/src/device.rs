@@ -5,7 +5,8 @@
 //! real device, is touched; the environment is put back before anything else reads it.
 
 use crate::gpu::Gpu;
-use crate::pipeline::{LocationAttribute, Pipeline, ResourceSlot, SpirvStage};
+use crate::machine::{Counting, count_machine};
+use crate::pipeline::{LocationAttribute, Pipeline, ResourceSlot, SlotKind, SpirvStage};
 use crate::statistics::Statistics;
 use ash::{khr, vk};
 use lamplight_bundle::{BindingKind, Stage};
@@ -21,6 +22,18 @@ const MANIFESTS: &[&str] = &[
     "/usr/share/vulkan/icd.d/radeon_icd.json",
     "/etc/vulkan/icd.d/radeon_icd.x86_64.json",
 ];
+
+/// What pipelines keep of their compilation: the statistics, and the machine code as text.
+const CAPTURED: vk::PipelineCreateFlags = vk::PipelineCreateFlags::from_raw(
+    vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR.as_raw()
+        | vk::PipelineCreateFlags::CAPTURE_INTERNAL_REPRESENTATIONS_KHR.as_raw(),
+);
+
+/// Bytes of push constants: all that RADV has.
+const PUSH_BYTES: u32 = 256;
+
+/// The driver's name for the machine code.
+const ASSEMBLY: &CStr = c"Assembly";
 
 /// A part of the device's name if it has no hardware.
 const NULL_HARDWARE: &str = "Null hardware";
@@ -102,17 +115,28 @@ impl Device {
         }
     }
 
-    /// Compiles a pipeline and gives the figures of each of its stages.
+    /// Compiles a pipeline and gives the figures of each of its stages. `turns` says how often loops
+    /// run whose code does not say it, in the order of the code; the last number holds for all
+    /// further ones, and without any each counts once.
     ///
     /// # Errors
-    /// What the driver says where it refuses the pipeline.
-    pub fn measure(&self, pipeline: &Pipeline) -> Result<Vec<(Stage, Statistics)>, String> {
+    /// What the driver says where it refuses the pipeline, or what about the machine code is not
+    /// understood.
+    pub fn measure(
+        &self,
+        pipeline: &Pipeline,
+        turns: &[u32],
+    ) -> Result<Vec<(Stage, Statistics)>, String> {
         let mut made = PipelineObjects::new(&self.device);
         let compiled = made.pipeline(pipeline).map_err(refusal_text)?;
-        self.figures(compiled)
+        self.figures(compiled, turns)
     }
 
-    fn figures(&self, pipeline: vk::Pipeline) -> Result<Vec<(Stage, Statistics)>, String> {
+    fn figures(
+        &self,
+        pipeline: vk::Pipeline,
+        turns: &[u32],
+    ) -> Result<Vec<(Stage, Statistics)>, String> {
         let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
         // SAFETY: the pipeline was made by this device with its statistics captured.
         let found = unsafe { self.executables.get_pipeline_executable_properties(&info) };
@@ -128,9 +152,36 @@ impl Device {
             let named = named.iter().filter_map(|named| {
                 Some((named.name_as_c_str().ok()?.to_str().ok()?, statistic_value(named)))
             });
-            stages.push((stage, Statistics::from_named(named)));
+            let text = self.assembly(&info).map_err(refusal_text)?;
+            let wave = executable.subgroup_size;
+            let counting = Counting { rates: self.gpu.rates, wave, turns };
+            let counted = count_machine(&text, counting).map_err(|error| error.to_string())?;
+            stages.push((stage, Statistics::of_stage(named, &counted, wave)));
         }
         Ok(stages)
+    }
+}
+
+impl Device {
+    /// The machine code of an executable as text: empty where the driver has no disassembler.
+    fn assembly(&self, info: &vk::PipelineExecutableInfoKHR<'_>) -> Result<String, vk::Result> {
+        // SAFETY: the executable is one that the driver listed for a pipeline of this device.
+        let mut found =
+            unsafe { self.executables.get_pipeline_executable_internal_representations(info) }?;
+        let mut texts: Vec<Vec<u8>> = found.iter().map(|one| vec![0; one.data_size]).collect();
+        for (one, text) in found.iter_mut().zip(&mut texts) {
+            one.p_data = text.as_mut_ptr().cast();
+        }
+        let ask = self.executables.fp().get_pipeline_executable_internal_representations_khr;
+        let mut count = found.len() as u32;
+        // SAFETY: as above; each `p_data` has the size that the driver named, and `texts` lives on.
+        let told = unsafe { ask(self.executables.device(), info, &mut count, found.as_mut_ptr()) };
+        told.result()?;
+        let place =
+            found.iter().position(|one| one.name_as_c_str().is_ok_and(|name| name == ASSEMBLY));
+        let text = place.and_then(|place| texts.get(place)).map_or(&[][..], Vec::as_slice);
+        let end = text.iter().position(|byte| *byte == 0).unwrap_or(text.len());
+        Ok(String::from_utf8_lossy(&text[..end]).into_owned())
     }
 }
 
@@ -248,10 +299,10 @@ impl<'d> PipelineObjects<'d> {
     pub(super) fn pipeline(&mut self, wanted: &Pipeline) -> Result<vk::Pipeline, vk::Result> {
         for stage in &wanted.stages {
             let info = vk::ShaderModuleCreateInfo::default().code(&stage.words);
-            // SAFETY: the words are a module that naga wrote and its validator accepted.
+            // SAFETY: naga wrote the module and its validator accepted it, or `spirv-val` did.
             self.modules.push(unsafe { self.device.create_shader_module(&info, None) }?);
         }
-        self.layout(&wanted.slots)?;
+        self.layout(&wanted.slots, wanted.has_push)?;
         let constants: Vec<SpecialisationEntries> =
             wanted.stages.iter().map(SpecialisationEntries::of).collect();
         let infos: Vec<_> = constants.iter().map(SpecialisationEntries::info).collect();
@@ -263,7 +314,7 @@ impl<'d> PipelineObjects<'d> {
         Ok(self.pipeline)
     }
 
-    fn layout(&mut self, slots: &[ResourceSlot]) -> Result<(), vk::Result> {
+    fn layout(&mut self, slots: &[ResourceSlot], has_push: bool) -> Result<(), vk::Result> {
         let groups = slots.iter().map(|slot| slot.group + 1).max().unwrap_or(0);
         for group in 0..groups {
             let bindings: Vec<_> = slots
@@ -273,7 +324,7 @@ impl<'d> PipelineObjects<'d> {
                     vk::DescriptorSetLayoutBinding::default()
                         .binding(slot.binding)
                         .descriptor_type(descriptor_type(slot.kind))
-                        .descriptor_count(1)
+                        .descriptor_count(slot.count)
                         .stage_flags(vk::ShaderStageFlags::ALL)
                 })
                 .collect();
@@ -281,7 +332,13 @@ impl<'d> PipelineObjects<'d> {
             // SAFETY: the structures live during the call.
             self.sets.push(unsafe { self.device.create_descriptor_set_layout(&info, None) }?);
         }
-        let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&self.sets);
+        let push = vk::PushConstantRange::default()
+            .stage_flags(vk::ShaderStageFlags::ALL)
+            .size(PUSH_BYTES);
+        let push = if has_push { &[push][..] } else { &[] };
+        let info = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&self.sets)
+            .push_constant_ranges(push);
         // SAFETY: as above.
         self.layout = unsafe { self.device.create_pipeline_layout(&info, None) }?;
         Ok(())
@@ -312,7 +369,7 @@ impl<'d> PipelineObjects<'d> {
             .take(1)
             .map(|stage| {
                 vk::ComputePipelineCreateInfo::default()
-                    .flags(vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR)
+                    .flags(CAPTURED)
                     .stage(stage)
                     .layout(self.layout)
             })
@@ -352,7 +409,7 @@ impl<'d> PipelineObjects<'d> {
             .color_attachment_formats(&formats)
             .depth_attachment_format(vk::Format::D32_SFLOAT);
         let info = vk::GraphicsPipelineCreateInfo::default()
-            .flags(vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR)
+            .flags(CAPTURED)
             .stages(stages)
             .vertex_input_state(&vertices)
             .input_assembly_state(&assembly)
@@ -427,7 +484,14 @@ fn stage_flags(stage: Stage) -> vk::ShaderStageFlags {
     }
 }
 
-fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
+fn descriptor_type(kind: SlotKind) -> vk::DescriptorType {
+    let kind = match kind {
+        SlotKind::Plain(kind) => kind,
+        SlotKind::Combined => return vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+        SlotKind::TexelBuffer => return vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
+        SlotKind::StorageTexelBuffer => return vk::DescriptorType::STORAGE_TEXEL_BUFFER,
+        SlotKind::InputAttachment => return vk::DescriptorType::INPUT_ATTACHMENT,
+    };
     match kind {
         BindingKind::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
         BindingKind::Storage => vk::DescriptorType::STORAGE_BUFFER,

@@ -29,7 +29,20 @@ pub struct SpirvStage {
 pub struct ResourceSlot {
     pub group: u32,
     pub binding: u32,
-    pub kind: BindingKind,
+    pub kind: SlotKind,
+    /// The length of an array of resources, else 1.
+    pub count: u32,
+}
+
+/// What is bound at a place. Shaders of other compilers have kinds that the project's have not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum SlotKind {
+    Plain(BindingKind),
+    /// A texture with its sampler.
+    Combined,
+    TexelBuffer,
+    StorageTexelBuffer,
+    InputAttachment,
 }
 
 /// A value at a location: a vertex attribute or a colour.
@@ -48,6 +61,8 @@ pub struct Pipeline {
     pub attributes: Vec<LocationAttribute>,
     /// By location; `None` where nothing is written.
     pub colors: Vec<Option<LocationAttribute>>,
+    /// Whether a stage reads push constants.
+    pub has_push: bool,
 }
 
 /// A stage, with its reflection.
@@ -55,6 +70,10 @@ pub struct Pipeline {
 pub struct ReflectedStage {
     pub words: SpirvStage,
     pub reflection: Reflection,
+    /// The resources.
+    pub slots: Vec<ResourceSlot>,
+    /// Whether it reads push constants.
+    pub has_push: bool,
 }
 
 impl ReflectedStage {
@@ -69,7 +88,9 @@ impl ReflectedStage {
         let words = spirv::words(bytes);
         let entry = CString::new(entry).map_err(|error| error.to_string())?;
         let stage = reflection.stage;
-        Ok(Self { words: SpirvStage { stage, entry, words, constants: Vec::new() }, reflection })
+        let words = SpirvStage { stage, entry, words, constants: Vec::new() };
+        let slots = reflection.bindings.iter().map(binding_slot).collect();
+        Ok(Self { words, reflection, slots, has_push: false })
     }
 
     /// From an entry point of a module, with these conventions.
@@ -109,22 +130,26 @@ impl Pipeline {
         let outputs = of(Stage::Fragment).map_or(&[][..], |known| &known.reflection.outputs);
         let attributes = located_values(inputs)?;
         let colors = color_targets(&located_values(outputs)?);
-        let slots = stage_slots(&stages);
+        let slots: BTreeSet<ResourceSlot> =
+            stages.iter().flat_map(|known| known.slots.iter().copied()).collect();
+        let slots = each_place(slots);
+        let has_push = stages.iter().any(|known| known.has_push);
         let stages = stages.into_iter().map(|known| known.words).collect();
-        Ok(Self { stages, slots, attributes, colors })
+        Ok(Self { stages, slots, attributes, colors, has_push })
     }
 }
 
-/// The resources of all stages, each once.
-fn stage_slots(stages: &[ReflectedStage]) -> Vec<ResourceSlot> {
-    let bindings = stages.iter().flat_map(|known| &known.reflection.bindings);
-    let slot = |found: &Binding| ResourceSlot {
-        group: found.group,
-        binding: found.binding,
-        kind: found.kind,
-    };
-    let slots: BTreeSet<ResourceSlot> = bindings.map(slot).collect();
-    slots.into_iter().collect()
+fn binding_slot(found: &Binding) -> ResourceSlot {
+    let Binding { group, binding, kind, .. } = found;
+    let kind = SlotKind::Plain(*kind);
+    ResourceSlot { group: *group, binding: *binding, kind, count: 1 }
+}
+
+/// Resources with each place once, as a layout needs it. Two names may have one place.
+fn each_place(slots: BTreeSet<ResourceSlot>) -> Vec<ResourceSlot> {
+    let mut slots: Vec<ResourceSlot> = slots.into_iter().collect();
+    slots.dedup_by_key(|slot| (slot.group, slot.binding));
+    slots
 }
 
 /// The values that have a location. The others are built-ins.

@@ -1,48 +1,86 @@
-//! What the compiler reports about the machine code of one stage.
+//! The figures of the machine code of one stage.
 
 use serde::{Deserialize, Serialize};
 
+use crate::machine::{MachineCost, Unit};
+
 /// Figures of one stage, or the difference of two.
 ///
-/// Latency and inverse throughput are estimates of the compiler, in cycles. Latency is the time of
-/// one wave from its first instruction to its last. Inverse throughput is the time of the busiest
-/// unit for each wave.
+/// Cycles are counted in the machine code, see [`crate::machine`]: for each unit on the dearest path,
+/// and, in the figures that begin with `least_`, on the cheapest one. The other figures are the
+/// compiler's.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Statistics {
-    pub instructions: i64,
+    /// Cycles in which vector instructions issue: `vector` and `transcendental`.
+    pub cycles: i64,
+    pub least_cycles: i64,
+    pub vector: i64,
+    pub least_vector: i64,
+    pub transcendental: i64,
+    pub least_transcendental: i64,
+    pub scalar: i64,
+    pub least_scalar: i64,
+    pub texture: i64,
+    pub least_texture: i64,
+    pub memory: i64,
+    pub least_memory: i64,
+    pub scalar_memory: i64,
+    pub least_scalar_memory: i64,
+    pub local: i64,
+    pub least_local: i64,
+    pub export: i64,
+    pub least_export: i64,
+    /// Loops that count once, since nothing says how often they run.
+    pub open_loops: i64,
+    /// Threads of a wave.
+    pub wave: i64,
     /// Vector registers of a thread.
     pub vgprs: i64,
     /// Scalar registers of a wave.
     pub sgprs: i64,
     pub spilled_vgprs: i64,
     pub spilled_sgprs: i64,
-    /// Bytes of machine code.
-    pub code_size: i64,
     /// Bytes of memory that a thread needs besides its registers.
     pub scratch: i64,
     /// Waves that fit on one SIMD at a time. More waves hide more latency.
     pub subgroups_per_simd: i64,
+    /// Instructions of the machine code, each once.
+    pub instructions: i64,
     pub branches: i64,
-    pub latency: i64,
-    pub inverse_throughput: i64,
+    /// Bytes of machine code.
+    pub code_size: i64,
 }
 
-/// A figure: its key in JSON, its heading in a table, Mesa's name for it, and whether more is
-/// worse.
+/// Where a figure comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// Mesa tells it by this name.
+    Mesa(&'static str),
+    /// Counted on the dearest path.
+    Most(Unit),
+    /// Counted on the cheapest path.
+    Least(Unit),
+    /// About the count itself.
+    Count,
+}
+
+/// A figure: its key in JSON, its heading where tables show it, where it comes from, and whether
+/// more is worse.
 pub struct CostFigure {
     pub key: &'static str,
     pub heading: &'static str,
-    pub mesa: &'static str,
+    pub origin: Origin,
     pub more_is_worse: bool,
     field: fn(&mut Statistics) -> &mut i64,
 }
 
 macro_rules! figure {
-    ($key:ident, $heading:literal, $mesa:literal, $more_is_worse:literal) => {
+    ($key:ident, $heading:literal, $origin:expr, $more_is_worse:literal) => {
         CostFigure {
             key: stringify!($key),
             heading: $heading,
-            mesa: $mesa,
+            origin: $origin,
             more_is_worse: $more_is_worse,
             field: |statistics| &mut statistics.$key,
         }
@@ -51,17 +89,35 @@ macro_rules! figure {
 
 /// Every figure, in the order of tables.
 pub const FIGURES: &[CostFigure] = &[
-    figure!(instructions, "instr", "Instructions", true),
-    figure!(vgprs, "VGPRs", "VGPRs", true),
-    figure!(sgprs, "SGPRs", "SGPRs", true),
-    figure!(spilled_vgprs, "spill V", "Spilled VGPRs", true),
-    figure!(spilled_sgprs, "spill S", "Spilled SGPRs", true),
-    figure!(code_size, "bytes", "Code size", true),
-    figure!(scratch, "scratch", "Scratch size", true),
-    figure!(subgroups_per_simd, "waves", "Subgroups per SIMD", false),
-    figure!(branches, "branches", "Branches", true),
-    figure!(latency, "latency", "Latency", true),
-    figure!(inverse_throughput, "inv.thr.", "Inverse Throughput", true),
+    figure!(cycles, "cycles", Origin::Most(Unit::Cycles), true),
+    figure!(least_cycles, "least", Origin::Least(Unit::Cycles), true),
+    figure!(vector, "vector", Origin::Most(Unit::Vector), true),
+    figure!(least_vector, "", Origin::Least(Unit::Vector), true),
+    figure!(transcendental, "trans", Origin::Most(Unit::Transcendental), true),
+    figure!(least_transcendental, "", Origin::Least(Unit::Transcendental), true),
+    figure!(scalar, "scalar", Origin::Most(Unit::Scalar), true),
+    figure!(least_scalar, "", Origin::Least(Unit::Scalar), true),
+    figure!(texture, "texture", Origin::Most(Unit::Texture), true),
+    figure!(least_texture, "", Origin::Least(Unit::Texture), true),
+    figure!(memory, "memory", Origin::Most(Unit::Memory), true),
+    figure!(least_memory, "", Origin::Least(Unit::Memory), true),
+    figure!(scalar_memory, "s.mem", Origin::Most(Unit::ScalarMemory), true),
+    figure!(least_scalar_memory, "", Origin::Least(Unit::ScalarMemory), true),
+    figure!(local, "local", Origin::Most(Unit::Local), true),
+    figure!(least_local, "", Origin::Least(Unit::Local), true),
+    figure!(export, "export", Origin::Most(Unit::Export), true),
+    figure!(least_export, "", Origin::Least(Unit::Export), true),
+    figure!(open_loops, "loops", Origin::Count, true),
+    figure!(wave, "", Origin::Count, false),
+    figure!(vgprs, "VGPRs", Origin::Mesa("VGPRs"), true),
+    figure!(sgprs, "SGPRs", Origin::Mesa("SGPRs"), true),
+    figure!(spilled_vgprs, "spill V", Origin::Mesa("Spilled VGPRs"), true),
+    figure!(spilled_sgprs, "spill S", Origin::Mesa("Spilled SGPRs"), true),
+    figure!(scratch, "scratch", Origin::Mesa("Scratch size"), true),
+    figure!(subgroups_per_simd, "waves", Origin::Mesa("Subgroups per SIMD"), false),
+    figure!(instructions, "instr", Origin::Mesa("Instructions"), true),
+    figure!(branches, "", Origin::Mesa("Branches"), true),
+    figure!(code_size, "bytes", Origin::Mesa("Code size"), true),
 ];
 
 impl CostFigure {
@@ -72,14 +128,31 @@ impl CostFigure {
 }
 
 impl Statistics {
-    /// From Mesa's names and values. What it does not report on a GPU is 0.
-    pub fn from_named<'n>(named: impl IntoIterator<Item = (&'n str, i64)>) -> Self {
+    /// From Mesa's names and values, and from what was counted in waves of so many threads. What
+    /// Mesa does not report on a GPU is 0.
+    pub fn of_stage<'n>(
+        named: impl IntoIterator<Item = (&'n str, i64)>,
+        counted: &MachineCost,
+        wave: u32,
+    ) -> Self {
         let mut statistics = Self::default();
         for (name, value) in named {
-            if let Some(figure) = FIGURES.iter().find(|figure| figure.mesa == name) {
+            let is_named =
+                |figure: &&CostFigure| matches!(figure.origin, Origin::Mesa(mesa) if mesa == name);
+            if let Some(figure) = FIGURES.iter().find(is_named) {
                 *(figure.field)(&mut statistics) = value;
             }
         }
+        for figure in FIGURES {
+            let value = match figure.origin {
+                Origin::Most(unit) => counted.most.of(unit),
+                Origin::Least(unit) => counted.least.of(unit),
+                Origin::Mesa(_) | Origin::Count => continue,
+            };
+            *(figure.field)(&mut statistics) = value;
+        }
+        statistics.open_loops = counted.open_loops() as i64;
+        statistics.wave = i64::from(wave);
         statistics
     }
 
@@ -89,6 +162,7 @@ impl Statistics {
         for figure in FIGURES {
             *(figure.field)(&mut difference) -= figure.of(other);
         }
+        difference.wave = self.wave;
         difference
     }
 }

@@ -1,7 +1,10 @@
 //! The package's tests.
 
 mod counts;
+mod machine;
+mod paths;
 
 fn main() -> std::process::ExitCode {
-    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), counts::tests()).exit_code()
+    let tests = [counts::tests(), machine::tests(), paths::tests()].into_iter().flatten().collect();
+    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), tests).exit_code()
 }

@@ -163,7 +163,7 @@ export async function page(into: HTMLElement) {
             point = next;
             axes(form, found, point, costs, (next) => set({ key: next }));
             info.textContent = `${found.doc} ${found.valid.toLocaleString("en")} permutations are possible, ${found.shipped.toLocaleString("en")} ship.`;
-            costNote.textContent = costs.axes.length ? `Costs are medians against the default of the axis, over pairs of permutations, on ${costs.gpu} (${costs.generation}) with ${costs.driver}.` : "";
+            costNote.textContent = costs.axes.length ? `Costs are medians against the default of the axis, over pairs of permutations, on one AMD GPU, ${costs.gpu} (${costs.generation}), as ${costs.driver} compiles for it.` : "";
             compare.textContent = state.against === undefined ? "Compare from here" : "End the comparison";
             compare.setAttribute("aria-pressed", String(state.against !== undefined));
         }

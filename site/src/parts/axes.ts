@@ -6,11 +6,11 @@ const signed = (value: number) => (value > 0 ? `+${value}` : String(value).repla
 
 /** What a value costs against the default of its axis, in words. */
 function cost(rows: AxisCost[]): string {
-    const changed = rows.filter((row) => row.instructions.some((one) => one !== 0) || row.vgprs !== 0);
+    const changed = rows.filter((row) => row.cycles.some((one) => one !== 0) || row.texture !== 0 || row.vgprs !== 0);
     if (!changed.length) return "costs nothing";
-    return changed.map(({ stage, instructions: [least, median, most], vgprs }) => {
+    return changed.map(({ stage, cycles: [least, median, most], texture, vgprs }) => {
         const spread = least === most ? "" : ` (${signed(least)} to ${signed(most)})`;
-        return `${stage}: ${signed(median)} instructions${spread}${vgprs ? `, ${signed(vgprs)} registers` : ""}`;
+        return `${stage}: ${signed(median)} cycles${spread}${texture ? `, ${signed(texture)} texture reads` : ""}${vgprs ? `, ${signed(vgprs)} registers` : ""}`;
     }).join("; ");
 }
 

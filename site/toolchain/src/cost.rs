@@ -31,14 +31,14 @@ pub struct AxisCost {
     pub stage: String,
     /// Pairs of permutations that differ only in the axis.
     pub pairs: u32,
-    /// The smallest change, the median, and the largest.
-    pub instructions: Vec<i32>,
+    /// The change of the cycles of vector instructions: the smallest, the median, and the largest.
+    pub cycles: Vec<i32>,
     /// The median change.
     pub vgprs: i32,
     /// Waves on a SIMD with the default and with the value, of the median pair.
     pub waves: Vec<i32>,
-    /// The median change.
-    pub inverse_throughput: i32,
+    /// The median change of the reads of textures.
+    pub texture: i32,
 }
 
 /// What the axes of one of the library's programs cost.
@@ -52,10 +52,10 @@ pub fn axis_costs(program: &str) -> Answer<CostInfo> {
         value: cost.value.clone(),
         stage: cost.stage.name().to_owned(),
         pairs: cost.pairs as u32,
-        instructions: cost.instructions.map(|change| change as i32).to_vec(),
+        cycles: cost.cycles.map(|change| change as i32).to_vec(),
         vgprs: cost.vgprs as i32,
         waves: cost.waves.map(|waves| waves as i32).to_vec(),
-        inverse_throughput: cost.inverse_throughput as i32,
+        texture: cost.texture as i32,
     };
     answer(&CostInfo {
         driver: record.driver.clone(),

@@ -39,24 +39,24 @@ pub fn axis_changes(
     Ok(permutations::value_changes(&axes, &measure_costs(meter, &subjects)?))
 }
 
-/// The table of changes: medians, and the range of the instructions.
+/// The table of changes: medians, and the range of the cycles.
 pub fn changes_table(changes: &[CostChange]) -> String {
     let columns =
-        ["gpu", "stage", "pairs", "instr", "range", "VGPRs", "waves", "inv.thr.", "axis and value"];
+        ["gpu", "stage", "pairs", "cycles", "range", "texture", "VGPRs", "waves", "axis and value"];
     let row = |change: &CostChange| {
         let of = |key: &str| change.figures.get(key).copied().unwrap_or_default();
         let signed = |key: &str| format!("{:+}", of(key).median);
-        let Spread { least, most, .. } = of("instructions");
+        let Spread { least, most, .. } = of("cycles");
         let waves = of("subgroups_per_simd");
         vec![
             change.gpu.to_owned(),
             change.stage.name().to_owned(),
             change.pairs.to_string(),
-            signed("instructions"),
+            signed("cycles"),
             format!("{least:+} to {most:+}"),
+            signed("texture"),
             signed("vgprs"),
             format!("{} to {}", waves.before, waves.after),
-            signed("inverse_throughput"),
             format!("{}={}", change.axis, change.value),
         ]
     };

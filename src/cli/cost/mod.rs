@@ -27,7 +27,7 @@ use crate::bundle::Stage;
 use crate::cost::baseline::{Baseline, Rise};
 use crate::cost::device::Device;
 use crate::cost::gpu::{self, GPUS, Gpu};
-use crate::cost::statistics::FIGURES;
+use crate::cost::statistics::{CostFigure, FIGURES, Statistics};
 use crate::cost::{self, Cost, CostSubject, Meter};
 use crate::diagnostic::nearest_name;
 use crate::generate::Progress;
@@ -39,14 +39,16 @@ const MOST_BYTES: u64 = 64 << 20;
 
 /// Estimate the cost of functions, permutations and shaders on GPUs that the machine need not have.
 ///
-/// Mesa's driver compiles them for AMD GPUs and reports figures of the machine code. A function is
-/// called by a fragment stage whose inputs vary and whose result is used. The figures of the same
-/// stage without the function are subtracted.
+/// Mesa's driver compiles them for AMD GPUs, and the cycles of each unit are counted in the machine
+/// code, on the cheapest and on the dearest path. A function is called by a fragment stage whose
+/// inputs vary and whose result is used. The figures of the same stage without the function are
+/// subtracted.
 #[derive(Args)]
 pub struct Arguments {
     /// A function (`brdf::specular::blinn_phong`), a module (`brdf::specular`), a folder (`brdf`),
     /// a permutation's key (`lights=spot,shadow=vsm`), or the file of a shader of your own,
-    /// or of a module, whose functions are measured [default: every function].
+    /// or of a module, whose functions are measured, or of SPIR-V (`shader.spv`); `-` is standard
+    /// input [default: every function].
     #[arg(value_name = "PATH|KEY|FILE")]
     subjects: Vec<String>,
     #[command(flatten)]
@@ -84,6 +86,10 @@ pub struct Arguments {
     /// The share by which a figure may rise, such as 0.02.
     #[arg(long, value_name = "SHARE", default_value_t = 0.02, value_parser = parse_share)]
     rise: f64,
+    /// How often loops run whose machine code does not say it, in the order of the code; the last
+    /// number holds for all further ones [default: they count once, and are listed].
+    #[arg(long, value_name = "N,...", value_delimiter = ',')]
+    turns: Vec<u32>,
     /// Print the figures of whole stages, instead of those that the functions add.
     #[arg(long)]
     whole: bool,
@@ -113,7 +119,7 @@ fn parse_share(text: &str) -> Result<f64, String> {
 /// GPUs as an option names them.
 #[derive(Args)]
 pub struct Gpus {
-    /// GPUs: tahiti, fiji, polaris10, vega10, raven, navi10, navi21, navi24, vangogh, gfx1100
+    /// GPUs: fiji, polaris10, vega10, raven, navi10, navi21, navi24, vangogh, gfx1100
     /// [default: one of each generation].
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = gpu_name)]
     gpu: Vec<&'static Gpu>,
@@ -164,7 +170,7 @@ pub fn run_cost(
     let cache = arguments.cached.open(arguments.manifest.as_deref())?;
     let subjects = subjects::requested_subjects(&arguments, form)?;
     let devices = opened.map_err(Failure::environment)?;
-    let meter = Meter { devices: &devices, cache: cache.as_ref() };
+    let meter = Meter { devices: &devices, cache: cache.as_ref(), turns: &arguments.turns };
     let costs = measure_costs(meter, &subjects)?;
     let driver = devices.first().map_or("", |device| &device.driver);
     print_costs(&arguments, driver, &costs)?;
@@ -238,21 +244,64 @@ fn print_costs(arguments: &Arguments, driver: &str, costs: &[Cost]) -> Result<()
     let several_stages = costs.iter().any(|cost| cost.stage != Stage::Fragment);
     let mut columns = vec!["gpu"];
     columns.extend(several_stages.then_some("stage"));
-    columns.extend(FIGURES.iter().map(|figure| figure.heading));
+    let shown: Vec<&CostFigure> =
+        FIGURES.iter().filter(|figure| is_shown(figure, arguments, costs)).collect();
+    columns.extend(shown.iter().map(|figure| figure.heading));
     columns.push("of");
     let rows: Vec<Vec<String>> = costs
         .iter()
         .map(|cost| {
-            let figures = if arguments.whole { &cost.stage_figures } else { cost.figures() };
+            let figures = table_figures(arguments, cost);
             let mut row = vec![cost.gpu.name.to_owned()];
             row.extend(several_stages.then(|| cost.stage.name().to_owned()));
-            row.extend(FIGURES.iter().map(|figure| figure.of(figures).to_string()));
+            row.extend(shown.iter().map(|figure| figure.of(figures).to_string()));
             row.push(cost.name.clone());
             row
         })
         .collect();
     writeln!(stdout(), "{driver}\n")?;
-    Ok(stdout().write_all(text::table_text(&columns, &rows).as_bytes())?)
+    stdout().write_all(text::table_text(&columns, &rows).as_bytes())?;
+    print_open_loops(costs)
+}
+
+/// The figures of a row.
+fn table_figures<'c>(arguments: &Arguments, cost: &'c Cost) -> &'c Statistics {
+    if arguments.whole { &cost.stage_figures } else { cost.figures() }
+}
+
+/// The columns that are left out where they are 0 in every row.
+const RARE: [&str; 9] = [
+    "memory",
+    "scalar_memory",
+    "local",
+    "export",
+    "open_loops",
+    "spilled_vgprs",
+    "spilled_sgprs",
+    "scratch",
+    "texture",
+];
+
+/// Whether the table has a column for a figure.
+fn is_shown(figure: &CostFigure, arguments: &Arguments, costs: &[Cost]) -> bool {
+    let is_rare = RARE.contains(&figure.key);
+    let is_there = || costs.iter().any(|cost| figure.of(table_figures(arguments, cost)) != 0);
+    !figure.heading.is_empty() && (!is_rare || is_there())
+}
+
+/// Says which subjects have loops of unknown length, which no figure shows.
+fn print_open_loops(costs: &[Cost]) -> Result<(), Failure> {
+    let open = costs.iter().filter(|cost| cost.stage_figures.open_loops > 0);
+    let names: BTreeSet<&str> = open.map(|cost| cost.name.as_str()).collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let names: Vec<&str> = names.into_iter().collect();
+    Ok(writeln!(
+        stdout(),
+        "\nLoops of unknown length count once; `--turns` says how often they run: {}",
+        names.join(", ")
+    )?)
 }
 
 fn cost_object(driver: &str, cost: &Cost) -> serde_json::Value {

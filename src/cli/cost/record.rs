@@ -37,7 +37,7 @@ pub fn record_costs(opened: OpenedGpus) -> Result<Costs, Failure> {
 
 /// A meter without a cache: costs that are recorded are always measured anew.
 fn uncached(devices: &[Device]) -> Meter<'_> {
-    Meter { devices, cache: None }
+    Meter { devices, cache: None, turns: &[] }
 }
 
 fn chip_of(device: &Device) -> Chip {
@@ -101,7 +101,15 @@ fn shown_device(devices: &[Device]) -> &[Device] {
 
 fn figures_row(cost: &Cost) -> [i64; FIGURES.len()] {
     let net = cost.figures();
-    [net.instructions, net.vgprs, net.latency, net.inverse_throughput]
+    [
+        net.cycles,
+        net.least_cycles,
+        net.transcendental,
+        net.texture,
+        net.vgprs,
+        net.instructions,
+        net.open_loops,
+    ]
 }
 
 /// What values of the axes of the library's programs change.
@@ -125,15 +133,16 @@ fn of_axes(devices: &[Device]) -> Result<Vec<AxisCost>, Failure> {
 
 fn axis_cost(program: &str, change: CostChange) -> AxisCost {
     let of = |key: &str| change.figures.get(key).copied().unwrap_or_default();
-    let (instructions, waves) = (of("instructions"), of("subgroups_per_simd"));
+    let (cycles, waves) = (of("cycles"), of("subgroups_per_simd"));
     AxisCost {
         program: program.to_owned(),
         stage: change.stage,
         pairs: change.pairs,
-        instructions: [instructions.least, instructions.median, instructions.most],
+        cycles: [cycles.least, cycles.median, cycles.most],
+        texture: of("texture").median,
+        instructions: of("instructions").median,
         vgprs: of("vgprs").median,
         waves: [waves.before, waves.after],
-        inverse_throughput: of("inverse_throughput").median,
         axis: change.axis,
         value: change.value,
     }

@@ -6,8 +6,9 @@ use std::sync::Mutex;
 use super::super::failure::{DiagnosticForm, Failure};
 use super::super::input::{ComposedInput, ErrorContext};
 use super::super::progress::Bar;
+use super::super::stream::{self, STANDARD_INPUT};
 use super::super::variants;
-use super::Arguments;
+use super::{Arguments, MOST_BYTES};
 use crate::LIBRARY_FILES;
 use crate::bundle::key::DEFAULT;
 use crate::bundle::{Axis, Conventions, Language, Stage, Target};
@@ -15,15 +16,18 @@ use crate::cache::Cache;
 use crate::catalogue::{self, CatalogueItem, CatalogueItemKind};
 use crate::check::library::Library;
 use crate::compose::{Composed, PartKind};
+use crate::cost::foreign::{ForeignError, foreign_stages};
 use crate::cost::pipeline::ReflectedStage;
 use crate::cost::{self, CostSubject, permutations};
 use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::generate::{MemorySink, Request, Root, Tools, entry_points, generate};
+use crate::input::read_file;
 use crate::lint;
 use crate::permute::{Manifest, Quoted, cover};
 use crate::project;
 use crate::resolve::{Graph, Packages};
 use crate::source::SourceSet;
+use crate::tools::SPIRV_VAL;
 use crate::validate::validate_every;
 
 /// What was asked for, in order.
@@ -49,7 +53,11 @@ pub fn requested_subjects(
         subjects.push(permutation_subject(arguments, key)?);
     }
     for file in files {
-        subjects.extend(file_subjects(arguments, Path::new(file), form)?);
+        let is_stream = file == STANDARD_INPUT;
+        subjects.extend(match is_module(file) || is_stream && !arguments.input.names_language() {
+            true => foreign_subjects(Path::new(file))?,
+            false => file_subjects(arguments, Path::new(file), form)?,
+        });
     }
     Ok(subjects)
 }
@@ -88,8 +96,17 @@ fn is_below(path: &str, named: &str) -> bool {
     path == named || path.strip_prefix(named).is_some_and(|rest| rest.starts_with("::"))
 }
 
-/// Whether a name is that of a shader's file: it ends as one does.
+/// Whether a name is that of a shader's file: it ends as one does, or is standard input.
 fn is_file(name: &str) -> bool {
+    name == STANDARD_INPUT || is_module(name) || has_text(name)
+}
+
+/// Whether a name is that of a file of SPIR-V.
+fn is_module(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension == "spv")
+}
+
+fn has_text(name: &str) -> bool {
     let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
     extension.is_some_and(|extension| lint::EXTENSIONS.contains(&extension))
 }
@@ -124,20 +141,55 @@ fn file_subjects(
         let known = ReflectedStage::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
         Ok((shader.entry.as_str(), known))
     });
-    let name = file.display();
+    let with_name = |reason: String| Failure::input(format!("{}: {reason}", file.display()));
+    let known = known.collect::<Result<Vec<(&str, ReflectedStage)>, String>>().map_err(with_name)?;
+    stage_subjects(&file.display().to_string(), known)
+}
+
+/// The subjects of the stages of a file, by the names of their entry points.
+fn stage_subjects(
+    name: &str,
+    known: Vec<(&str, ReflectedStage)>,
+) -> Result<Vec<CostSubject>, Failure> {
     let with_name = |reason: String| Failure::input(format!("{name}: {reason}"));
-    let known =
-        known.collect::<Result<Vec<(&str, ReflectedStage)>, String>>().map_err(with_name)?;
     let of = |stage| known.iter().filter(move |(_, known)| known.words.stage == stage).count();
     let is_pair = (of(Stage::Vertex), of(Stage::Fragment), known.len()) == (1, 1, 2);
     if is_pair {
         let pair = known.into_iter().map(|(_, known)| known).collect();
-        return Ok(vec![cost::stages_subject(&name.to_string(), pair).map_err(with_name)?]);
+        return Ok(vec![cost::stages_subject(name, pair).map_err(with_name)?]);
     }
     let each = known
         .into_iter()
         .map(|(entry, known)| cost::stages_subject(&format!("{name} {entry}"), vec![known]));
     each.collect::<Result<_, _>>().map_err(with_name)
+}
+
+/// The subjects of a file of SPIR-V, after `spirv-val` accepted it: a driver may do anything with
+/// a module that is not valid.
+fn foreign_subjects(file: &Path) -> Result<Vec<CostSubject>, Failure> {
+    let name = match file.as_os_str() == STANDARD_INPUT {
+        true => "<standard input>".to_owned(),
+        false => file.display().to_string(),
+    };
+    let with_name = |reason: String| Failure::input(format!("{name}: {reason}"));
+    let bytes = match file.as_os_str() == STANDARD_INPUT {
+        true => stream::read_stream_bytes(file)?,
+        false => read_file(file, MOST_BYTES).map_err(|error| with_name(error.to_string()))?,
+    };
+    let stages = foreign_stages(&bytes).map_err(|error| {
+        let hint = match (&error, file.as_os_str() == STANDARD_INPUT) {
+            (ForeignError::NoModule, true) => "; for a text, add `--lang`",
+            _ => "",
+        };
+        with_name(format!("{error}{hint}"))
+    })?;
+    if SPIRV_VAL.path().is_none() {
+        return Err(Failure::environment(SPIRV_VAL.missing()));
+    }
+    SPIRV_VAL.pipe(&["--target-env", "vulkan1.3", "-"], &bytes).map_err(with_name)?;
+    let names: Vec<String> =
+        stages.iter().map(|stage| stage.words.entry.to_string_lossy().into_owned()).collect();
+    stage_subjects(&name, names.iter().map(String::as_str).zip(stages).collect())
 }
 
 /// The functions that a module declares itself.

@@ -14,11 +14,14 @@ use crate::pages::table_cell;
 const HEAD: &str = "\
 # Costs
 
-The tables say what each function adds to a fragment stage. Mesa's driver for AMD GPUs compiles the
-stage. The arguments of the function are inputs, so the compiler knows nothing about them. Latency
-and inverse throughput are the compiler's estimates, in cycles of a wave. Use them to compare
-functions on one GPU; they do not predict milliseconds. `lamplight cost` measures the same figures,
-also for your own shaders. The page *Cost on GPUs* of the guide explains the columns.
+The tables say what each function adds to a fragment stage. They are the figures of one vendor's
+compiler: Mesa's driver for AMD GPUs. The arguments of the function are inputs, so the compiler knows
+nothing about them. Cycles are those in which vector instructions issue, counted in the machine code
+along the dearest path; `at least` is the cheapest path. `transcendental` is the part of the cycles
+for roots, powers and sines, `textures` the reads of textures. Loops run as often as the code says; a
+loop of unknown length, which `open loops` counts, runs once. Use the figures to compare functions on
+one GPU; they do not predict milliseconds. `lamplight cost` measures the same, also for your own
+shaders. The page *Cost on GPUs* of the guide explains the columns.
 ";
 
 /// The table of one function: a column for each GPU.
@@ -28,7 +31,7 @@ pub fn of_function(text: &mut String, item: &CatalogueItem, costs: &Costs) {
         costs.gpus.iter().map(|gpu| format!("{} ({})", gpu.name, gpu.generation)).collect();
     let _ = write!(
         text,
-        "\n**Cost.** What the function adds to a fragment stage, by GPU ({}):\n\n| | {} |\n|---|{}\n",
+        "\n**Cost.** What the function adds to a fragment stage, by AMD GPU, compiled by {}:\n\n| | {} |\n|---|{}\n",
         costs.driver,
         headings.join(" | "),
         "---:|".repeat(headings.len())
@@ -104,7 +107,7 @@ pub fn quality_picture(measured: &Measured, costs: &Costs) -> Option<String> {
         (entry.name.clone(), figures[SORTED_BY] as f64, *error)
     };
     let points: Vec<(String, f64, f64)> = rows.iter().map(point).collect();
-    let cost = format!("inverse throughput on {SHOWN}, cycles of a wave");
+    let cost = format!("cycles of vector instructions on {SHOWN}");
     let group = &measured.group;
     (!points.is_empty()).then(|| draw_scatter(&group.title, [&cost, &group.label], &points))
 }
@@ -147,8 +150,10 @@ pub fn of_program(text: &mut String, program: &str, costs: &Costs) {
     let _ = write!(
         text,
         "\nHow each value changes a stage on `{SHOWN}`, compared with the default of its axis: the median over all\n\
-         pairs of permutations that differ in that axis alone, and the range of the instructions.\n\
-         Values that change nothing are left out.\n\n"
+         pairs of permutations that differ in that axis alone, and the range of the cycles, by {}.\n\
+         Loops over lamps run for all lamps that the axis `max_lights` allows. Values that change\n\
+         nothing are left out.\n\n",
+        costs.driver
     );
     write_changes(text, &rows);
 }
@@ -174,19 +179,18 @@ pub fn of_axis(program: &str, axis: &str, costs: &Costs) -> Option<String> {
 fn write_changes(text: &mut String, rows: &[&AxisCost]) {
     let _ = write!(
         text,
-        "| axis and value | stage | pairs | instructions | range | VGPRs | waves | inverse throughput |\n\
-         |---|---|---:|---:|---:|---:|---:|---:|\n"
+        "| axis and value | stage | pairs | cycles | range | textures | instructions | VGPRs | waves |\n\
+         |---|---|---:|---:|---:|---:|---:|---:|---:|\n"
     );
     for row in rows {
-        let AxisCost { axis, value, pairs, instructions, vgprs, waves, inverse_throughput, .. } =
-            row;
+        let AxisCost { axis, value, pairs, cycles, texture, instructions, vgprs, waves, .. } = row;
         let stage = row.stage.name();
-        let [least, median, most] = instructions;
+        let [least, median, most] = cycles;
         let [before, after] = waves;
         let _ = writeln!(
             text,
-            "| `{axis}={value}` | {stage} | {pairs} | {median:+} | {least:+} to {most:+} | {vgprs:+} | \
-             {before} to {after} | {inverse_throughput:+} |"
+            "| `{axis}={value}` | {stage} | {pairs} | {median:+} | {least:+} to {most:+} | {texture:+} | \
+             {instructions:+} | {vgprs:+} | {before} to {after} |"
         );
     }
 }
@@ -194,6 +198,7 @@ fn write_changes(text: &mut String, rows: &[&AxisCost]) {
 impl AxisCost {
     /// Whether no pair shows a difference.
     fn is_free(&self) -> bool {
-        self.instructions == [0; 3] && self.vgprs == 0 && self.inverse_throughput == 0
+        let Self { cycles, texture, instructions, vgprs, .. } = self;
+        *cycles == [0; 3] && (*texture, *instructions, *vgprs) == (0, 0, 0)
     }
 }
