@@ -189,6 +189,19 @@ fn lost_instructions() -> Outcome {
         (Unit::Export, 0, 0),
     ];
     expect("lost", text, counting(&[]), &wanted)?;
+    // A load, a move, a wait, another load, and then a product as it should be.
+    let longer = "BB0:
+	s_mov_b32 s35, 0x3f5bab86                                   ; bea303ff 3f5bab86
+	s_waitcnt vmcnt(0)                                          ; bf8c3f70
+(invalid instruction)                                        ; f4081a00
+	exp mrt0 off, off, off, off                                 ; fa000130 be93032b
+	s_waitcnt lgkmcnt(0)                                        ; bf8cc07f
+	s_buffer_load_dwordx4 s[40:43], s[104:107], null            ; f4280a34 fa000000
+	v_fma_f32 v49, v53, v49, 1.0                                ; d54b0031 03ca6335
+	s_endpgm                                                    ; bf810000
+";
+    let wanted = [(Unit::Vector, 1, 1), (Unit::Scalar, 2, 2), (Unit::ScalarMemory, 2, 2)];
+    expect("longer", longer, counting(&[]), &wanted)?;
     let unknown = text.replace("d557000e", "d54b000e");
     match count_machine(&unknown, counting(&[])) {
         Err(MachineError::Unreadable(words)) if words == "d5578031" => Ok(()),

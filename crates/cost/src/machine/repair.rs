@@ -93,6 +93,14 @@ fn length_of(words: &[u32]) -> Option<usize> {
             let literal = [0, 9, 18].iter().any(|shift| has_literal(second >> shift));
             Some(if literal { 3 } else { 2 })
         }
+        // Scalar instructions: with a constant of 16 bits, of control, and with one or two sources.
+        _ if first >> 28 == 0b1011 && first >> 23 < 0b1_0111_1101 => Some(1),
+        _ if first >> 23 == 0b1_0111_1111 => Some(1),
+        _ if first >> 30 == 0b10 => {
+            let is_single = first >> 23 == 0b1_0111_1101;
+            let sources = [first & 0xff, if is_single { 0 } else { first >> 8 & 0xff }];
+            Some(if sources.contains(&0xff) { 2 } else { 1 })
+        }
         // Vector instructions with one or two sources.
         code if code >> 5 == 0 => Some(if has_literal(first) { 2 } else { 1 }),
         _ => None,
@@ -106,6 +114,10 @@ fn opcode_of(word: u32) -> u32 {
         // The bits from 16 on, without the modifiers below.
         0b11_0101 | 0b11_0011 => word & 0xffff_0000,
         code if code >> 3 == 0b111 => word & 0xfffc_0000,
+        // Scalar instructions: one source, a comparison or control, and all others.
+        _ if word >> 23 == 0b1_0111_1101 => word & 0xff80_ff00,
+        _ if word >> 24 == 0b1011_1111 => word & 0xffff_0000,
+        code if code >> 4 == 0b10 => word & 0xff80_0000,
         // One source, or a comparison.
         0b01_1111 if word >> 25 == 0b11_1111 => word & 0xfe00_01fe,
         0b01_1111 => word & 0xfffe_0000,
