@@ -4,10 +4,11 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use lamplight_testing::commands::stderr_text;
 use libtest_mimic::Failed;
 use serde_json::Value;
 
-use super::{Outcome, figure, lamplight, objects, said};
+use super::{Outcome, figure, lamplight, objects};
 
 /// Four lamps cost more than one, and ten more than four, whether the compiler unrolls the loop or
 /// not. No lamp costs the same in all of them.
@@ -119,7 +120,7 @@ pub fn modules() -> Outcome {
         .current_dir(folder.path())
         .output()?;
     if !compiled.status.success() {
-        return Err(said(&compiled).into());
+        return Err(stderr_text(&compiled).into());
     }
     let cost = |arguments: &[&str], input: Option<&str>| -> Result<Value, Failed> {
         let input = input.map(|name| fs::File::open(folder.path().join(name))).transpose()?;
@@ -130,7 +131,7 @@ pub fn modules() -> Outcome {
             .stdin(input.map_or_else(Stdio::null, Stdio::from))
             .output()?;
         if output.status.code() != Some(0) {
-            return Err(said(&output).into());
+            return Err(stderr_text(&output).into());
         }
         Ok(serde_json::from_slice::<Value>(&output.stdout)?[0]["figures"].clone())
     };
@@ -199,8 +200,8 @@ fn refused_modules(folder: &Path) -> Outcome {
     for (name, bytes, expected) in cases {
         fs::write(folder.join(name), bytes)?;
         let output = lamplight(&[&folder.join(name).to_string_lossy(), "--gpu", "navi21"])?;
-        if output.status.code() != Some(1) || !said(&output).contains(expected) {
-            let found = format!("{:?}: {}", output.status, said(&output));
+        if output.status.code() != Some(1) || !stderr_text(&output).contains(expected) {
+            let found = format!("{:?}: {}", output.status, stderr_text(&output));
             return Err(format!("{name}: expected exit code 1 and `{expected}`, {found}").into());
         }
     }

@@ -139,9 +139,16 @@ fn names_by_opcode<'t>(raw: &[&'t str]) -> BTreeMap<u32, &'t str> {
 }
 
 fn instruction_of(names: &BTreeMap<u32, &str>, word: u32) -> Result<Instruction, MachineError> {
-    // What the disassembler refuses are loads of four or more scalars.
-    if word >> 26 == 0b11_1101 {
-        return Ok(parse_instruction("s_buffer_load_dwordx4"));
+    // Of some encodings, all instructions have one unit. What the disassembler refuses are loads of
+    // four or more scalars.
+    let whole = match word >> 26 {
+        0b11_1101 => Some("s_buffer_load_dwordx4"),
+        0b11_1000 => Some("buffer_load_dword"),
+        0b11_1110 => Some("exp"),
+        _ => None,
+    };
+    if let Some(name) = whole {
+        return Ok(parse_instruction(name));
     }
     let known = names.get(&opcode_of(word));
     let known = known.ok_or_else(|| MachineError::Unreadable(format!("{word:08x}")))?;
