@@ -42,6 +42,13 @@ pub fn with_filters(text: &str, module: &Module) -> Result<String, String> {
     }
 }
 
+/// A text that naga wrote, with derivatives allowed in any control flow.
+pub fn without_derivative_rule(text: &str) -> String {
+    let header = text.split_inclusive('\n').take_while(|line| super::is_header_line(line));
+    let (directives, rest) = text.split_at(header.map(str::len).sum());
+    format!("{directives}diagnostic(off, derivative_uniformity);\n{rest}")
+}
+
 fn attributes(module: &Module, function: &Function) -> String {
     let own = written(module, function.diagnostic_filter_leaf, module.diagnostic_filter_leaf);
     own.iter().map(|filter| format!("@diagnostic{filter} ")).collect()

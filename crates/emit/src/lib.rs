@@ -34,6 +34,7 @@ mod strides;
 mod text;
 mod zeros;
 
+pub use filters::without_derivative_rule;
 pub use header::is_header_line;
 pub use isolate::isolate;
 pub use names::type_name;

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::browsers::fit_for_browsers;
 use super::{Linker, Reason};
 use lamplight_bundle::{
-    Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Target, Unit,
+    Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Language, Target, Unit,
 };
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
@@ -66,7 +67,10 @@ pub fn compile(
         let left: Vec<Target> = whole.iter().map(|(target, _)| *target).collect();
         unit.targets.extend(compile_whole(text, entry, &left, linker)?.0.targets);
     }
-    let warnings = if linked.suspect { lint_text(text)? } else { Vec::new() };
+    let mut warnings = if linked.suspect { lint_text(text, targets)? } else { Vec::new() };
+    if linked.suspect {
+        warnings.extend(fit_unit(text, entry, &mut unit, &warnings)?);
+    }
     check_size(&unit).map_err(|error| vec![error])?;
     Ok(CompiledUnit { unit, warnings, whole })
 }
@@ -132,14 +136,14 @@ fn check_size(unit: &Unit) -> Result<(), Diagnostic> {
     }
 }
 
-fn lint_text(text: &TextForms<'_>) -> Result<Diagnostics, Diagnostics> {
+fn lint_text(text: &TextForms<'_>, targets: &[Target]) -> Result<Diagnostics, Diagnostics> {
     // naga refuses some texts for their aliases, which the lean one does not have.
     let (composed, validated) = match validate(text.composed) {
         Ok(validated) => (text.composed, validated),
         Err(_) => (text.lean, validate(text.lean)?),
     };
-    let found = validate::lint(composed, &validated);
-    // A text can make a finding an error: `diagnostic(error, derivative_uniformity)`.
+    let found = validate::lint(composed, &validated, targets.contains(&Target::WGSL));
+    // Browsers refuse some, and a text can make others errors.
     match found.iter().any(|one| one.severity == Severity::Error) {
         true => Err(found),
         false => Ok(found),
@@ -157,11 +161,33 @@ fn compile_whole(
     let validated = try_and_validate(text, entry, targets, linker)?;
     emit::check_targets(text.lean, &validated, targets)
         .or_else(|_| emit::check_targets(text.composed, &whole()?, targets))?;
-    let unit = compile_unit(text, &validated, entry, targets, linker)
+    let mut unit = compile_unit(text, &validated, entry, targets, linker)
         .map_err(|error| vec![emit::at_entry(error, text.composed, entry)])?;
     // Lints are looked for in the author's text, since the lean text has no places.
-    let warnings = if validate::has_lints(&validated) { lint_text(text)? } else { Vec::new() };
+    let mut warnings = match validate::has_lints(text.lean, &validated) {
+        true => lint_text(text, targets)?,
+        false => Vec::new(),
+    };
+    warnings.extend(fit_unit(text, entry, &mut unit, &warnings)?);
     Ok((unit, warnings))
+}
+
+/// Makes the WGSL of a unit such that browsers take it, where the language of the source has
+/// another rule for derivatives.
+fn fit_unit(
+    text: &TextForms<'_>,
+    entry: &str,
+    unit: &mut Unit,
+    known: &[Diagnostic],
+) -> Result<Diagnostics, Diagnostics> {
+    let is_wesl = text.lean.language == Language::Wesl;
+    if is_wesl && !text.lean.text.contains("@diagnostic") {
+        return Ok(Vec::new());
+    }
+    match unit.targets.get_mut(Target::WGSL.name()) {
+        Some(artifact) => fit_for_browsers(text, entry, artifact, known),
+        None => Ok(Vec::new()),
+    }
 }
 
 fn compile_unit(

@@ -43,6 +43,7 @@
 //! text, declaration by declaration and up to names, for every target: it fails where a version of
 //! naga breaks one of these assumptions.
 
+mod browsers;
 mod canonical;
 mod compile;
 pub mod cut;
@@ -102,8 +103,7 @@ pub struct Linked {
     pub reflection: Arc<Reflection>,
     /// For each target its output, or why it has to be compiled as a whole.
     pub targets: Vec<Result<Artifact, Reason>>,
-    /// Whether a derivative may be taken in non-uniform control flow. The lint of the whole text
-    /// decides whether it is.
+    /// Whether the text may break a rule of browsers. The lint of the whole text decides.
     pub suspect: bool,
 }
 
@@ -143,7 +143,10 @@ impl<'a> Linker<'a> {
             units[*function] = Some(self.unit(&outline, unit, &units, &mut left)?);
         }
         let entry = self.unit(&outline, canonical::UnitId::Entry, &units, &mut left)?;
-        let suspect = entry.summary.derives_non_uniformly;
+        let suspect = match outline.language {
+            Language::Wesl => entry.summary.breaks_rules,
+            Language::Glsl => entry.summary.derives_non_uniformly,
+        };
         let reflection = entry.reflection.clone().ok_or(Reason::EntryPoint)?;
         let named = functions.iter().filter_map(|function| {
             Some((outline.declarations[*function].name(), units[*function].clone()?))

@@ -20,8 +20,12 @@ pub struct FunctionSummary {
     pub pairs: BTreeSet<SampledPair>,
     /// It takes derivatives, or samples with a level that derivatives choose.
     pub derives: bool,
-    /// It does so in non-uniform control flow.
+    /// It does so in non-uniform control flow. This is for GLSL; WGSL has rules of its own.
     pub derives_non_uniformly: bool,
+    /// What its callers notice of it by the rules of WGSL.
+    pub rules: lamplight_rules::Summary,
+    /// It, or a function that it calls, breaks one of these.
+    pub breaks_rules: bool,
     /// It cannot be called in a vertex stage.
     pub only_fragments: bool,
     /// A hash of all of the above.
@@ -96,9 +100,7 @@ pub fn summarise_function<'s>(
     }
     let mut walk = SummaryWalk { module, function, callee, summary, has_diverged: false };
     walk.block(&function.body, false)?;
-    let mut summary = walk.summary;
-    summary.key = hash_parts([format!("{summary:?}").as_bytes()]);
-    Some(summary)
+    Some(walk.summary)
 }
 
 fn is_derivative(expression: &Expression) -> bool {
@@ -226,6 +228,12 @@ impl SummaryWalk<'_, '_> {
 }
 
 impl FunctionSummary {
+    /// The same with its key.
+    pub fn with_key(mut self) -> Self {
+        self.key = hash_parts([format!("{self:?}").as_bytes()]);
+        self
+    }
+
     /// Whether an entry point of the stage may reach the function.
     pub fn is_for(&self, stage: ShaderStage) -> bool {
         stage == ShaderStage::Fragment || !self.only_fragments

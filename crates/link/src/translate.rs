@@ -100,6 +100,7 @@ fn translate_inner(
         return Err(Reason::Alias);
     }
     let summary = checked_summary(outline, recipe, &module, &info)?;
+    let summary = with_rules(outline, recipe, composed, summary).with_key();
     let is_entry = recipe.unit == UnitId::Entry;
     if is_entry && !summary.is_for(outline.stage) {
         return Err(Reason::Stage);
@@ -167,6 +168,28 @@ fn checked_summary(
         }
     };
     found.ok_or(Reason::Sampling)
+}
+
+/// The summary with what the rules of WGSL say of the unit.
+fn with_rules(
+    outline: &Outline<'_>,
+    recipe: &Recipe<'_>,
+    composed: &Composed,
+    summary: FunctionSummary,
+) -> FunctionSummary {
+    if outline.language == Language::Glsl {
+        return summary;
+    }
+    let Some(function) = recipe.function else { return summary };
+    let stub = |name: &str| {
+        let mut stubs = recipe.stubs.iter();
+        stubs.find(|(stub, _)| outline.declarations[*stub].name() == name)
+    };
+    let known = |name: &str| stub(name).map(|(_, summary)| &summary.rules);
+    let name = outline.declarations[function].name();
+    let (rules, is_clean) = lamplight_rules::summarise(&composed.text, name, &known);
+    let breaks_rules = !is_clean || recipe.stubs.iter().any(|(_, stub)| stub.breaks_rules);
+    FunctionSummary { rules, breaks_rules, ..summary }
 }
 
 fn write_target(

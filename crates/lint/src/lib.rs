@@ -183,7 +183,7 @@ pub fn lint_text(graph: &Graph, composed: &Composed) -> Diagnostics {
     let warnings = graph.own(composed.warnings.clone());
     match validate::validate_every(composed) {
         Ok(validated) => {
-            let more = graph.own(validate::lint(composed, &validated));
+            let more = graph.own(validate::lint(composed, &validated, false));
             warnings.into_iter().chain(more).collect()
         }
         Err(errors) => warnings.into_iter().chain(errors).collect(),

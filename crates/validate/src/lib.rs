@@ -5,6 +5,7 @@
 //! ([`limits`]), and every call runs on a large stack with panics caught ([`guard`]).
 
 mod alias;
+mod browsers;
 mod constants;
 mod every;
 mod glsl;
@@ -20,6 +21,7 @@ mod uniformity;
 mod words;
 
 pub use alias::{NamesGlobal, may_alias};
+pub use browsers::{has_lints, lint};
 pub use every::validate_every;
 pub use glsl::{check_glsl, check_switches, parse_glsl};
 pub use guard::{catch_panics, guard, on_large_stack};
@@ -31,7 +33,6 @@ pub use operands::{
 };
 #[doc(hidden)]
 pub use sandbox::{STAGE, SandboxJob, SandboxOutputs, try_in_sandbox};
-pub use uniformity::{has_lints, lint};
 
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationError, ValidationFlags, Validator};
@@ -97,8 +98,11 @@ pub fn is_small(composed: &Composed) -> Result<bool, Diagnostic> {
 
 fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
     match composed.language {
-        Language::Wesl => wgsl::parse_str(&composed.text)
-            .map_err(|error| vec![report::wgsl_error(composed, &error)]),
+        Language::Wesl => {
+            let without = lamplight_rules::without_statement_filters(&composed.text);
+            wgsl::parse_str(without.as_deref().unwrap_or(&composed.text))
+                .map_err(|error| vec![report::wgsl_error(composed, &error)])
+        }
         Language::Glsl => {
             let stage = composed.stage.ok_or_else(|| {
                 vec![Diagnostic::error(

@@ -1,7 +1,6 @@
-//! Warns of derivatives in non-uniform control flow, and of samples that choose their level by
-//! derivatives there. GPUs give undefined results, browsers refuse such shaders, and naga accepts
-//! them. The filters of the text, such as `diagnostic(off, derivative_uniformity)`, decide whether
-//! it is a warning, an error, or nothing.
+//! Warns, for GLSL, of derivatives in non-uniform control flow, and of samples that choose their level by
+//! derivatives there. GPUs give undefined results, and naga accepts them. WGSL has rules of its own
+//! for this ([`super::browsers`]).
 //!
 //! Values that differ between fragments are followed from the inputs of the fragment stage through
 //! expressions, variables, arguments and results. What cannot be followed counts as uniform, since

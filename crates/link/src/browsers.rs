@@ -1,0 +1,59 @@
+//! What becomes of derivatives that WGSL's rule does not allow, but the source does: GLSL has no
+//! such rule, and naga does not read filters at statements. Then the output turns the rule off.
+
+use std::sync::Arc;
+
+use super::compile::TextForms;
+use lamplight_bundle::{Artifact, Language, Target};
+use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
+use lamplight_emit::without_derivative_rule;
+use lamplight_rules::{self as rules, Problem, Rule};
+use lamplight_validate::on_large_stack;
+
+/// Turns the rule off in a WGSL output that needs it, and gives the warnings for that. Warnings
+/// that the source already has are not repeated.
+///
+/// # Errors
+/// Barriers in non-uniform control flow, which no filter allows.
+pub fn fit_for_browsers(
+    text: &TextForms<'_>,
+    entry: &str,
+    artifact: &mut Artifact,
+    known: &[Diagnostic],
+) -> Result<Diagnostics, Diagnostics> {
+    let written = String::from_utf8_lossy(&artifact.bytes).into_owned();
+    let problems = on_large_stack(|| rules::check(&written));
+    let errors: Vec<&Problem> =
+        problems.iter().filter(|one| one.severity >= rules::Severity::Default).collect();
+    if let Some(problem) = errors.iter().find(|one| one.rule != Rule::Derivative) {
+        let message = format!("browsers refuse the output: {}", problem.message);
+        let code = match problem.rule {
+            Rule::Barrier | Rule::Subgroup => codes::NON_UNIFORM_BARRIER,
+            _ => codes::BROWSERS_REFUSE,
+        };
+        return Err(vec![at_entry(text, entry, Diagnostic::error(code, message))]);
+    }
+    let Some(first) = errors.first() else { return Ok(Vec::new()) };
+    artifact.bytes = Arc::from(without_derivative_rule(&written).into_bytes());
+    let is_known = known.iter().any(|one| one.code == codes::NON_UNIFORM_DERIVATIVE);
+    if is_known || text.composed.language == Language::Wesl {
+        return Ok(Vec::new());
+    }
+    let told = Diagnostic {
+        severity: Severity::Warning,
+        ..Diagnostic::error(codes::NON_UNIFORM_DERIVATIVE, first.message.clone())
+    };
+    let told = told.note(format!(
+        "the output for `{}` has `diagnostic(off, derivative_uniformity);`",
+        Target::WGSL
+    ));
+    Ok(vec![at_entry(text, entry, told)])
+}
+
+fn at_entry(text: &TextForms<'_>, entry: &str, told: Diagnostic) -> Diagnostic {
+    let function = text.composed.function(entry);
+    match function.and_then(|function| text.composed.place_of(function)) {
+        Some(span) => told.at(span, "in this entry point, or in what it calls"),
+        None => told,
+    }
+}

@@ -1,0 +1,138 @@
+//! What control flow may do after a statement ("Statements Behavior Analysis" in the
+//! specification). The parser computes it for each statement from those within.
+
+use super::syntax::{Block, Clause, Statement, StatementKind, Tree};
+use super::{Problem, Rule};
+
+/// A set of ways in which control flow leaves a statement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Behaviour(u8);
+
+impl Behaviour {
+    pub const NONE: Self = Self(0);
+    pub const NEXT: Self = Self(1);
+    pub const BREAK: Self = Self(2);
+    pub const CONTINUE: Self = Self(4);
+    pub const RETURN: Self = Self(8);
+
+    pub const fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
+    pub const fn has(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+}
+
+/// The behaviour of statements after one another.
+pub fn of_statements(statements: &[Statement<'_>]) -> Behaviour {
+    let mut found = Behaviour::NEXT;
+    for statement in statements {
+        if !found.has(Behaviour::NEXT) {
+            break;
+        }
+        found = found.without(Behaviour::NEXT).or(statement.behaviour);
+    }
+    found
+}
+
+pub fn of_block(block: &Block<'_>) -> Behaviour {
+    of_statements(&block.statements)
+}
+
+pub fn of_switch(clauses: &[Clause<'_>]) -> Behaviour {
+    let all =
+        clauses.iter().fold(Behaviour::NONE, |found, clause| found.or(of_block(&clause.body)));
+    match all.has(Behaviour::BREAK) {
+        true => all.or(Behaviour::NEXT).without(Behaviour::BREAK),
+        false => all,
+    }
+}
+
+/// The behaviour of a loop with the given ones of its body and of its continuing block.
+pub fn of_loop(body: Behaviour, continuing: Behaviour) -> Behaviour {
+    let both = body.or(continuing);
+    if body == Behaviour::RETURN {
+        Behaviour::RETURN
+    } else if both.has(Behaviour::BREAK) {
+        both.or(Behaviour::NEXT).without(Behaviour::BREAK.or(Behaviour::CONTINUE))
+    } else {
+        both.without(Behaviour::CONTINUE.or(Behaviour::NEXT))
+    }
+}
+
+/// The behaviour of `for` and `while`: a condition is an `if` with a `break`.
+pub fn of_conditional_loop(has_condition: bool, body: Behaviour) -> Behaviour {
+    let body = match has_condition {
+        true => body.or(Behaviour::BREAK),
+        false => body,
+    };
+    of_loop(body, Behaviour::NEXT)
+}
+
+/// Functions and loops whose behaviour is not allowed.
+pub fn check(tree: &Tree<'_>) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for function in &tree.functions {
+        check_block(&function.body, &mut problems);
+        let found = of_block(&function.body);
+        let is_value = function.result.is_some();
+        if is_value && found.has(Behaviour::NEXT) {
+            let message = format!("`{}` does not return a value on every path", function.name);
+            problems.push(Problem::new(Rule::Behaviour, function.place, message));
+        }
+    }
+    problems
+}
+
+fn check_block(block: &Block<'_>, problems: &mut Vec<Problem>) {
+    for statement in &block.statements {
+        check_statement(statement, problems);
+    }
+}
+
+fn check_statement(statement: &Statement<'_>, problems: &mut Vec<Problem>) {
+    match &statement.kind {
+        StatementKind::Block(block) => check_block(block, problems),
+        StatementKind::If { condition: _, accept, reject } => {
+            check_block(accept, problems);
+            if let Some(reject) = reject {
+                check_statement(reject, problems);
+            }
+        }
+        StatementKind::Switch { selector: _, filters: _, clauses } => {
+            clauses.iter().for_each(|clause| check_block(&clause.body, problems));
+        }
+        StatementKind::Loop { body, continuing } => {
+            check_block(body, problems);
+            if let Some(continuing) = continuing {
+                check_block(continuing, problems);
+                if of_block(continuing).has(Behaviour::CONTINUE.or(Behaviour::RETURN)) {
+                    let message = "a `continuing` block must not return or continue".to_owned();
+                    problems.push(Problem::new(Rule::Behaviour, continuing.place, message));
+                }
+            }
+        }
+        StatementKind::For(parts) => check_block(&parts.body, problems),
+        StatementKind::While { condition: _, body } => check_block(body, problems),
+        StatementKind::Empty
+        | StatementKind::Declare(_)
+        | StatementKind::Assign { .. }
+        | StatementKind::Count { .. }
+        | StatementKind::Call(_)
+        | StatementKind::Return(_)
+        | StatementKind::Break
+        | StatementKind::BreakIf(_)
+        | StatementKind::Continue
+        | StatementKind::Discard
+        | StatementKind::Assert => {}
+    }
+    if statement.behaviour == Behaviour::NONE {
+        let message = "this loop never ends: nothing in it breaks or returns".to_owned();
+        problems.push(Problem::new(Rule::Behaviour, statement.place, message));
+    }
+}

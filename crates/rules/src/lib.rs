@@ -1,0 +1,138 @@
+//! The rules of WGSL that naga does not check, and browsers do: uniformity ("Uniformity" in the
+//! specification), behaviours of statements, and smaller ones. The analysis runs on a text of its
+//! own tree: naga's module no longer has all that the rules speak of.
+
+mod attributes;
+mod behaviour;
+mod constants;
+mod memory;
+mod names;
+mod parse;
+mod statements;
+mod syntax;
+mod token;
+mod uniformity;
+
+use std::ops::Range;
+
+pub use syntax::Severity;
+pub use uniformity::Summary;
+
+/// Bytes of a text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    pub start: u32,
+    pub end: u32,
+}
+
+impl Place {
+    /// The same as a range.
+    pub fn range(self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
+}
+
+/// Which rule a text breaks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rule {
+    /// The grammar.
+    Grammar,
+    /// The text nests deeper than this analysis goes.
+    Depth,
+    /// Operators beside each other that need brackets.
+    Precedence,
+    /// Statements that never end, or never return a value.
+    Behaviour,
+    /// Atomics where they cannot be, memory that a stage cannot use.
+    Memory,
+    /// Attributes where they do not belong.
+    Attribute,
+    /// Constant arguments that give no value.
+    Constant,
+    /// `derivative_uniformity`.
+    Derivative,
+    /// `subgroup_uniformity`.
+    Subgroup,
+    /// Barriers and `workgroupUniformLoad`.
+    Barrier,
+}
+
+/// A place where a text breaks a rule.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    pub rule: Rule,
+    pub severity: Severity,
+    pub place: Place,
+    pub message: String,
+    /// Other places that explain it.
+    pub notes: Vec<(Place, String)>,
+}
+
+impl Problem {
+    fn new(rule: Rule, place: Place, message: String) -> Self {
+        Self { rule, severity: Severity::Default, place, message, notes: Vec::new() }
+    }
+}
+
+/// What breaks a rule in a text that naga accepts, in the order of the text. It recurses as deep as
+/// the text nests, so it needs a large stack.
+pub fn check(text: &str) -> Vec<Problem> {
+    check_with(text, &|_| None).0
+}
+
+/// What callers notice of a function, and whether anything in it breaks a rule. `known` has this of
+/// the functions whose bodies are not in the text. It needs a large stack, as [`check`] does.
+pub fn summarise<'s>(
+    text: &str,
+    function: &str,
+    known: &dyn Fn(&str) -> Option<&'s Summary>,
+) -> (Summary, bool) {
+    let (problems, mut summaries) = check_with(text, known);
+    let own = summaries.iter().position(|(name, _)| name == function);
+    let own = own.map_or_else(Summary::default, |at| summaries.swap_remove(at).1);
+    (own.without_places(), problems.is_empty())
+}
+
+/// The text with blanks for the filters at its statements, which naga cannot read; `None` where it
+/// has none. It needs a large stack.
+pub fn without_statement_filters(text: &str) -> Option<String> {
+    if !text.contains("@diagnostic") {
+        return None;
+    }
+    let (tree, _) = parse::parse(text)?.ok()?;
+    let mut blank = text.to_owned();
+    for place in &tree.statement_filters {
+        blank.replace_range(place.range(), &" ".repeat(place.range().len()));
+    }
+    (!tree.statement_filters.is_empty()).then_some(blank)
+}
+
+/// The problems of a text, and what is known of its functions.
+fn check_with<'s>(
+    text: &str,
+    known: &dyn Fn(&str) -> Option<&'s Summary>,
+) -> (Vec<Problem>, Vec<(String, Summary)>) {
+    if let Some(at) = text.find('\0') {
+        let place = Place { start: at as u32, end: at as u32 + 1 };
+        let message = "a text must not have the character U+0000".to_owned();
+        return (vec![Problem::new(Rule::Grammar, place, message)], Vec::new());
+    }
+    let (tree, mut problems) = match parse::parse(text) {
+        None => return (Vec::new(), Vec::new()),
+        Some(Err(problem)) => return (vec![problem], Vec::new()),
+        Some(Ok(parsed)) => parsed,
+    };
+    let module = names::Module::read(&tree);
+    problems.extend(behaviour::check(&tree));
+    problems.extend(statements::check(&tree));
+    problems.extend(attributes::check(&tree, &module));
+    problems.extend(memory::check(&tree, &module));
+    problems.extend(constants::check(&tree, &module));
+    let (found, summaries) = uniformity::check(&tree, &module, known);
+    problems.extend(found);
+    problems.sort_by(|one, other| {
+        (one.place, one.rule, &one.notes).cmp(&(other.place, other.rule, &other.notes))
+    });
+    problems.dedup_by_key(|problem| (problem.place, problem.rule));
+    (problems, summaries)
+}

@@ -1,0 +1,182 @@
+//! Memory: what atomics may be in, and which stages may reach what.
+
+use std::collections::BTreeSet;
+
+use super::names::{Global, Module};
+use super::syntax::{Attribute, Declaration, ExprId, ExprKind, Function, Tree};
+use super::{Place, Problem, Rule};
+
+pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for declaration in &tree.declarations {
+        check_variable(module, declaration, &mut problems);
+    }
+    for expression in &tree.expressions {
+        if let ExprKind::Name { name: "ptr", template } = &expression.kind {
+            check_pointer(module, template, expression.place, &mut problems);
+        }
+        if let ExprKind::Name { name: "atomic", template } = &expression.kind {
+            let of = template.first().and_then(|id| module.type_of(*id));
+            if !of.is_some_and(|(name, _)| matches!(name, "i32" | "u32" | "i64" | "u64")) {
+                let message = "`atomic` takes `i32` or `u32`".to_owned();
+                problems.push(Problem::new(Rule::Memory, expression.place, message));
+            }
+        }
+    }
+    check_stages(tree, module, &mut problems);
+    problems
+}
+
+fn check_variable(
+    module: &Module<'_, '_>,
+    declaration: &Declaration<'_>,
+    problems: &mut Vec<Problem>,
+) {
+    let Some(of_type) = declaration.of_type else { return };
+    let space = module.template_word(&declaration.template, 0);
+    let access = module.template_word(&declaration.template, 1);
+    if has_atomic(module, of_type, 0) {
+        problems.extend(misplaced_atomic(space, access, declaration.place));
+    }
+}
+
+/// Why atomics cannot be in an address space.
+fn misplaced_atomic(space: Option<&str>, access: Option<&str>, place: Place) -> Option<Problem> {
+    let message = match (space, access) {
+        (Some("workgroup"), _) | (Some("storage"), Some("read_write")) => return None,
+        (Some("storage"), _) => "atomics in a storage buffer need `read_write`",
+        _ => "atomics can only be in the address spaces `storage` and `workgroup`",
+    };
+    Some(Problem::new(Rule::Memory, place, message.to_owned()))
+}
+
+fn check_pointer(
+    module: &Module<'_, '_>,
+    template: &[ExprId],
+    place: Place,
+    problems: &mut Vec<Problem>,
+) {
+    let space = module.template_word(template, 0);
+    let access = module.template_word(template, 2);
+    if space == Some("storage") && access == Some("write") {
+        let message = "the address space `storage` has no access mode `write`".to_owned();
+        problems.push(Problem::new(Rule::Memory, place, message));
+    }
+    if template.get(1).is_some_and(|id| has_atomic(module, *id, 0)) {
+        problems.extend(misplaced_atomic(space, access, place));
+    }
+}
+
+/// Whether a type has atomics within.
+fn has_atomic(module: &Module<'_, '_>, id: ExprId, depth: usize) -> bool {
+    // Types cannot contain themselves; naga says so where they do.
+    if depth > 64 {
+        return false;
+    }
+    match module.type_of(id) {
+        Some(("atomic", _)) => true,
+        Some(("array", template)) => {
+            template.first().is_some_and(|of| has_atomic(module, *of, depth + 1))
+        }
+        _ => module.structure(id).is_some_and(|structure| {
+            let mut members = module.tree.structs[structure].members.iter();
+            members.any(|member| has_atomic(module, member.of_type, depth + 1))
+        }),
+    }
+}
+
+/// The stage of an entry point.
+pub fn stage_of(function: &Function<'_>) -> Option<&'static str> {
+    let has = |stage: &str| {
+        let is = |attribute: &Attribute<'_>| attribute.name == stage;
+        function.attributes.iter().any(is)
+    };
+    ["vertex", "fragment", "compute"].into_iter().find(|stage| has(stage))
+}
+
+/// Where a stage reaches memory that it must not.
+fn check_stages(tree: &Tree<'_>, module: &Module<'_, '_>, problems: &mut Vec<Problem>) {
+    if tree.functions.iter().all(|function| matches!(stage_of(function), None | Some("compute"))) {
+        return;
+    }
+    let uses = uses_of_functions(tree, module);
+    for (entry, function) in tree.functions.iter().enumerate() {
+        let Some(stage @ ("vertex" | "fragment")) = stage_of(function) else { continue };
+        for variable in reached_variables(&uses, entry) {
+            let declaration = &tree.declarations[variable];
+            let Some(what) = forbidden(module, declaration, stage) else { continue };
+            let message = format!("the {stage} stage cannot use `{}`: {what}", declaration.name);
+            let mut problem = Problem::new(Rule::Memory, function.place, message);
+            problem.notes.push((declaration.place, "declared here".to_owned()));
+            problems.push(problem);
+        }
+    }
+}
+
+fn forbidden(
+    module: &Module<'_, '_>,
+    declaration: &Declaration<'_>,
+    stage: &str,
+) -> Option<&'static str> {
+    let space = module.template_word(&declaration.template, 0);
+    let access = module.template_word(&declaration.template, 1);
+    if space == Some("workgroup") {
+        return Some("it belongs to a workgroup");
+    }
+    if stage != "vertex" {
+        return None;
+    }
+    if space == Some("storage") && access == Some("read_write") {
+        return Some("it is a storage buffer that can be written");
+    }
+    let (kind, template) = declaration.of_type.and_then(|id| module.type_of(id))?;
+    let access = module.template_word(template, 1);
+    let is_written = kind.starts_with("texture_storage_") && access != Some("read");
+    is_written.then_some("it is a storage texture that can be written")
+}
+
+/// The functions and the variables of the module that a function names.
+#[derive(Default, Clone)]
+struct Uses {
+    functions: BTreeSet<usize>,
+    variables: BTreeSet<usize>,
+}
+
+fn uses_of_functions(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Uses> {
+    let mut uses = vec![Uses::default(); tree.functions.len()];
+    for expression in &tree.expressions {
+        let (ExprKind::Name { name, .. } | ExprKind::Call { callee: name, .. }) = &expression.kind
+        else {
+            continue;
+        };
+        let Some(function) = tree.enclosing(expression.place) else { continue };
+        match module.find(name) {
+            Some(Global::Function(callee)) => {
+                uses[function].functions.insert(callee);
+            }
+            Some(Global::Variable(variable)) if !is_local(&tree.functions[function], name) => {
+                uses[function].variables.insert(variable);
+            }
+            _ => {}
+        }
+    }
+    uses
+}
+
+/// Whether a function has a parameter or a local of that name, so that it may not mean the module's.
+fn is_local(function: &Function<'_>, name: &str) -> bool {
+    function.parameters.iter().any(|parameter| parameter.name == name)
+        || super::statements::declares(&function.body, name)
+}
+
+fn reached_variables(uses: &[Uses], entry: usize) -> BTreeSet<usize> {
+    let (mut reached, mut seen) = (BTreeSet::new(), vec![false; uses.len()]);
+    let mut open = vec![entry];
+    while let Some(function) = open.pop() {
+        if !std::mem::replace(&mut seen[function], true) {
+            reached.extend(&uses[function].variables);
+            open.extend(&uses[function].functions);
+        }
+    }
+    reached
+}

@@ -1,0 +1,230 @@
+//! Expressions.
+
+use super::{Kind, Parsed, Parser};
+use crate::syntax::{ExprId, ExprKind};
+use crate::{Place, Problem, Rule};
+
+/// What an expression is made of at its top, by which operators may stand beside it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Unary,
+    Multiplicative,
+    Additive,
+    Shift,
+    /// `&`, `|` and `^`, whose operands are unary.
+    Bitwise,
+    Relational,
+    /// `&&` and `||`.
+    ShortCircuit,
+}
+
+/// Binary operators by how tightly naga and the specification bind them, loosest first.
+const LEVELS: [&[&str]; 10] = [
+    &["||"],
+    &["&&"],
+    &["|"],
+    &["^"],
+    &["&"],
+    &["==", "!="],
+    &["<", ">", "<=", ">="],
+    &["<<", ">>"],
+    &["+", "-"],
+    &["*", "/", "%"],
+];
+
+impl<'t> Parser<'t> {
+    pub fn expression(&mut self) -> Parsed<ExprId> {
+        self.deeper(|parser| parser.binary(0).map(|(id, _)| id))
+    }
+
+    /// A sequence of expressions in round brackets.
+    pub fn arguments(&mut self) -> Parsed<Vec<ExprId>> {
+        self.expect("(")?;
+        let mut found = Vec::new();
+        while !self.is(")") {
+            found.push(self.expression()?);
+            if !self.take(",") {
+                break;
+            }
+        }
+        self.expect(")")?;
+        Ok(found)
+    }
+
+    fn binary(&mut self, level: usize) -> Parsed<(ExprId, Level)> {
+        let Some(operators) = LEVELS.get(level) else { return self.unary() };
+        let (mut left, mut left_level) = self.binary(level + 1)?;
+        let mut last: Option<&'t str> = None;
+        while let Some(operator) = self.operator(operators) {
+            let place = self.next().place;
+            let (right, right_level) = self.binary(level + 1)?;
+            let own = self.check_mixed(operator, last, (left_level, right_level), (left, place));
+            let start = self.tree.place(left).start;
+            left = self.add(ExprKind::Binary { operator, left, right }, start)?;
+            left_level = own;
+            last = Some(operator);
+        }
+        Ok((left, left_level))
+    }
+
+    fn operator(&self, among: &[&str]) -> Option<&'t str> {
+        let token = self.token();
+        (token.kind == Kind::Mark && among.contains(&token.text)).then_some(token.text)
+    }
+
+    /// Reports operators that may not stand beside each other without brackets, and gives the level
+    /// of the whole.
+    fn check_mixed(
+        &mut self,
+        operator: &'t str,
+        last: Option<&str>,
+        (left, right): (Level, Level),
+        (operand, place): (ExprId, Place),
+    ) -> Level {
+        let (level, is_allowed) = match operator {
+            "*" | "/" | "%" => (Level::Multiplicative, true),
+            "+" | "-" => (Level::Additive, true),
+            "<<" | ">>" => (Level::Shift, left == Level::Unary && right == Level::Unary),
+            "&" | "|" | "^" => {
+                let goes_on = left == Level::Bitwise && last == Some(operator);
+                (Level::Bitwise, (left == Level::Unary || goes_on) && right == Level::Unary)
+            }
+            "&&" | "||" => {
+                let goes_on = left == Level::ShortCircuit && last == Some(operator);
+                let is_below =
+                    |level: Level| level < Level::ShortCircuit && level != Level::Bitwise;
+                (Level::ShortCircuit, (is_below(left) || goes_on) && is_below(right))
+            }
+            _ => (Level::Relational, left <= Level::Shift && right <= Level::Shift),
+        };
+        if !is_allowed {
+            let message = format!("`{operator}` beside another operator needs brackets");
+            let place = Place { start: self.tree.place(operand).start.min(place.start), ..place };
+            let place = Place { end: self.end(), ..place };
+            self.problems.push(Problem::new(Rule::Precedence, place, message));
+        }
+        level
+    }
+
+    fn unary(&mut self) -> Parsed<(ExprId, Level)> {
+        let token = self.token();
+        if token.kind != Kind::Mark {
+            return Ok((self.postfix()?, Level::Unary));
+        }
+        let start = token.place.start;
+        let kind = match token.text {
+            "-" | "!" | "~" => {
+                self.next();
+                let operand = self.operand()?;
+                ExprKind::Unary { operator: token.text, operand }
+            }
+            "&" => {
+                self.next();
+                ExprKind::AddressOf(self.operand()?)
+            }
+            "*" => {
+                self.next();
+                ExprKind::Indirection(self.operand()?)
+            }
+            // Two of these marks beside each other are two operators here.
+            "--" | "&&" => return Ok((self.doubled(token.text)?, Level::Unary)),
+            _ => return Ok((self.postfix()?, Level::Unary)),
+        };
+        Ok((self.add(kind, start)?, Level::Unary))
+    }
+
+    fn operand(&mut self) -> Parsed<ExprId> {
+        self.deeper(|parser| parser.unary().map(|(id, _)| id))
+    }
+
+    fn doubled(&mut self, text: &'t str) -> Parsed<ExprId> {
+        let place = self.next().place;
+        if text == "--" {
+            let message = "`--` is no operator of an expression: write `-(-x)`".to_owned();
+            return Err(Problem::new(Rule::Grammar, place, message));
+        }
+        let operand = self.operand()?;
+        let inner = self.add(ExprKind::AddressOf(operand), place.start + 1)?;
+        self.add(ExprKind::AddressOf(inner), place.start)
+    }
+
+    pub fn postfix(&mut self) -> Parsed<ExprId> {
+        let start = self.token().place.start;
+        let mut id = self.primary()?;
+        loop {
+            if self.take("[") {
+                let index = self.expression()?;
+                self.expect("]")?;
+                id = self.add(ExprKind::Index { base: id, index }, start)?;
+            } else if self.take(".") {
+                self.word()?;
+                id = self.add(ExprKind::Member(id), start)?;
+            } else {
+                return Ok(id);
+            }
+        }
+    }
+
+    fn primary(&mut self) -> Parsed<ExprId> {
+        let token = self.token();
+        let start = token.place.start;
+        match token.kind {
+            Kind::Number => {
+                self.next();
+                self.add(ExprKind::Literal(token.text), start)
+            }
+            Kind::Word if matches!(token.text, "true" | "false") => {
+                self.next();
+                self.add(ExprKind::Literal(token.text), start)
+            }
+            Kind::Word => self.named(),
+            Kind::Mark if token.text == "(" => {
+                self.next();
+                let inner = self.expression()?;
+                self.expect(")")?;
+                self.add(ExprKind::Parenthesized(inner), start)
+            }
+            _ => Err(self.unexpected("an expression")),
+        }
+    }
+
+    /// A name, a type, or a call.
+    fn named(&mut self) -> Parsed<ExprId> {
+        let start = self.token().place.start;
+        let name = self.word()?;
+        let template = self.template()?;
+        let kind = match self.is("(") {
+            true => ExprKind::Call { callee: name, template, arguments: self.arguments()? },
+            false => ExprKind::Name { name, template },
+        };
+        self.add(kind, start)
+    }
+
+    /// The template list that may stand here.
+    pub fn template(&mut self) -> Parsed<Vec<ExprId>> {
+        let mut found = Vec::new();
+        if self.token().kind != Kind::TemplateStart {
+            return Ok(found);
+        }
+        self.next();
+        while self.token().kind != Kind::TemplateEnd {
+            found.push(self.expression()?);
+            if !self.take(",") {
+                break;
+            }
+        }
+        match self.token().kind {
+            Kind::TemplateEnd => self.next(),
+            _ => return Err(self.unexpected(">")),
+        };
+        Ok(found)
+    }
+
+    /// A type: a name with its template list.
+    pub fn type_name(&mut self) -> Parsed<ExprId> {
+        let start = self.token().place.start;
+        let name = self.word()?;
+        let template = self.deeper(Self::template)?;
+        self.add(ExprKind::Name { name, template }, start)
+    }
+}

@@ -1,0 +1,133 @@
+//! Declarations of a module, and the directives before them.
+
+use super::{Kind, Parsed, Parser};
+use crate::syntax::{Alias, Attribute, DeclarationKind, Filter, Function, Member, Struct};
+
+impl<'t> Parser<'t> {
+    pub fn module(&mut self) -> Parsed<()> {
+        self.directives()?;
+        while self.token().kind != Kind::End {
+            if self.take(";") {
+                continue;
+            }
+            let (attributes, filters) = self.attributes()?;
+            self.item(attributes, filters)?;
+        }
+        Ok(())
+    }
+
+    fn directives(&mut self) -> Parsed<()> {
+        loop {
+            match self.token().text {
+                "enable" | "requires" => {
+                    let is_enable = self.next().text == "enable";
+                    while self.token().kind == Kind::Word {
+                        let name = self.word()?;
+                        if is_enable {
+                            self.tree.enabled.push(name);
+                        }
+                        if !self.take(",") {
+                            break;
+                        }
+                    }
+                    self.expect(";")?;
+                }
+                "diagnostic" => {
+                    self.next();
+                    let filter = self.diagnostic()?;
+                    self.tree.filters.extend(filter);
+                    self.expect(";")?;
+                }
+                _ => return Ok(()),
+            }
+        }
+    }
+
+    fn item(&mut self, attributes: Vec<Attribute<'t>>, filters: Vec<Filter>) -> Parsed<()> {
+        match self.token().text {
+            "fn" => self.function(attributes, filters),
+            "struct" => self.structure(),
+            "alias" => {
+                self.next();
+                let name = self.word()?;
+                self.expect("=")?;
+                let of_type = self.type_name()?;
+                self.tree.aliases.push(Alias { name, of_type });
+                self.expect(";").map(drop)
+            }
+            "const_assert" => {
+                self.next();
+                let condition = self.expression()?;
+                self.tree.asserts.push(condition);
+                self.expect(";").map(drop)
+            }
+            "var" => self.variable(DeclarationKind::Var, attributes),
+            "const" => self.variable(DeclarationKind::Const, attributes),
+            "override" => self.variable(DeclarationKind::Override, attributes),
+            _ => Err(self.unexpected("a declaration")),
+        }
+    }
+
+    fn variable(&mut self, kind: DeclarationKind, attributes: Vec<Attribute<'t>>) -> Parsed<()> {
+        let mut declaration = self.declaration(kind)?;
+        declaration.attributes = attributes;
+        self.tree.declarations.push(declaration);
+        self.expect(";").map(drop)
+    }
+
+    fn function(&mut self, attributes: Vec<Attribute<'t>>, filters: Vec<Filter>) -> Parsed<()> {
+        self.next();
+        let place = self.token().place;
+        let name = self.word()?;
+        self.expect("(")?;
+        let parameters = self.members(")")?;
+        self.expect(")")?;
+        let (result, result_attributes) = match self.take("->") {
+            true => {
+                let (attributes, _) = self.attributes()?;
+                (Some(self.type_name()?), attributes)
+            }
+            false => (None, Vec::new()),
+        };
+        self.is_in_function = true;
+        let body = self.block()?;
+        self.is_in_function = false;
+        self.tree.functions.push(Function {
+            name,
+            place,
+            attributes,
+            filters,
+            parameters,
+            result,
+            result_attributes,
+            body,
+        });
+        Ok(())
+    }
+
+    fn structure(&mut self) -> Parsed<()> {
+        self.next();
+        let name = self.word()?;
+        self.expect("{")?;
+        let members = self.members("}")?;
+        self.expect("}")?;
+        self.tree.structs.push(Struct { name, members });
+        Ok(())
+    }
+
+    fn members(&mut self, end: &str) -> Parsed<Vec<Member<'t>>> {
+        let mut found = Vec::new();
+        while !self.is(end) {
+            let (attributes, _) = self.attributes()?;
+            let place = self.token().place;
+            let name = self.word()?;
+            self.expect(":")?;
+            let of_type = self.type_name()?;
+            found.push(Member { name, place, of_type, attributes });
+            if !self.take(",") {
+                break;
+            }
+        }
+        Ok(found)
+    }
+}
