@@ -42,6 +42,11 @@ const COMMANDS: &[XtaskCommand] = &[
         record::run,
     ),
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
+    (
+        "conformance",
+        "what is accepted of other people's suites (gpuweb's CTS, folders of WGSL): [--verbose] DIR...",
+        |arguments| make::run("conformance", arguments),
+    ),
     ("validate", "let the validators of all targets check every output of a bundle", |arguments| {
         make::run("validate", arguments)
     }),

@@ -1,153 +1,111 @@
-//! `cargo xtask conformance DIR...`: how much of other people's GLSL is translated, beside what
-//! glslang accepts of it.
+//! `cargo xtask conformance DIR...`: what the crate accepts and refuses of other people's suites,
+//! beside what is expected there. Nothing of a suite is in the repository; `CONTRIBUTING.md` says
+//! where they come from.
 
-use std::collections::BTreeMap;
+mod cts;
+mod folder;
+mod glsl;
+mod table;
+
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
-use lamplight::bundle::Language;
-use lamplight::compose::Composed;
-use lamplight::glsl::tree::Stage;
-use lamplight::source::SourceId;
+use lamplight::diagnostic::{Diagnostic, Severity, codes};
+use lamplight::lint;
+use lamplight::permute::Settings;
+use lamplight::resolve::Packages;
+use lamplight::source::SourceSet;
+use lamplight_rules as rules;
+use lamplight_validate::on_large_stack;
+
+use table::Table;
 use xtask::{CommandFailure, CommandResult};
 
-/// How the names of files end, and the stage that this stands for.
-const STAGES: &[(&str, &str, Stage)] = &[
-    ("vert", "vert", Stage::Vertex),
-    ("vs", "vert", Stage::Vertex),
-    ("frag", "frag", Stage::Fragment),
-    ("fs", "frag", Stage::Fragment),
-    ("comp", "comp", Stage::Compute),
-    ("cs", "comp", Stage::Compute),
-];
-
-fn usage() -> CommandFailure {
-    CommandFailure::usage(
-        "usage: cargo xtask conformance [-I DIR]... DIR...\n\n  \
-         -I DIR  where `#include` finds files, beside the folder of the file",
-    )
+/// A program of a suite.
+pub struct Program {
+    /// The test that it belongs to, or its file.
+    pub name: String,
+    pub text: String,
+    /// Whether it is valid.
+    pub expected: bool,
 }
 
-/// What became of the files of a folder.
-#[derive(Default)]
-struct Count {
-    files: usize,
-    /// Files that glslang accepts.
-    accepted: usize,
-    /// Of these, the files that are translated.
-    translated: usize,
-    /// Files by the reason for which they are not translated, with an example.
-    causes: BTreeMap<String, (usize, PathBuf)>,
+/// What a folder is.
+enum Suite {
+    /// gpuweb's CTS, of which the shader validation tests are run.
+    Cts,
+    /// Shaders in WGSL, of which Tint says whether they are valid.
+    Folder,
 }
 
-/// Prints a table with a line for each folder, and then the causes of the rest.
-pub fn run(arguments: &[String]) -> CommandResult {
-    let (mut folders, mut includes) = (Vec::new(), Vec::new());
-    let mut rest = arguments.iter();
-    while let Some(argument) = rest.next() {
-        match argument.as_str() {
-            "-I" => includes.push(format!("-I{}", rest.next().ok_or_else(usage)?)),
-            folder if !folder.starts_with('-') => folders.push(PathBuf::from(folder)),
-            _ => return Err(usage()),
+impl Suite {
+    fn of(folder: &Path) -> Self {
+        match folder.join("src/webgpu/shader/validation").is_dir() {
+            true => Self::Cts,
+            false => Self::Folder,
         }
+    }
+
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Cts => "cts",
+            Self::Folder => "folder",
+        }
+    }
+}
+
+/// Runs the suites in some folders. With `--verbose`, it also prints each difference.
+pub fn run(arguments: &[String]) -> CommandResult {
+    if let Some(("glsl", rest)) = arguments.split_first().map(|(first, rest)| (first.as_str(), rest)) {
+        return glsl::run(rest);
+    }
+    let (flags, folders): (Vec<&String>, Vec<&String>) =
+        arguments.iter().partition(|argument| argument.starts_with("--"));
+    if let Some(unknown) = flags.iter().find(|flag| *flag.as_str() != *"--verbose") {
+        return Err(CommandFailure::usage(format!("`{unknown}` is not known")));
     }
     if folders.is_empty() {
-        return Err(usage());
+        return Err(CommandFailure::usage("cargo xtask conformance [--verbose] DIR... | glsl [-I DIR]... DIR..."));
     }
-    println!("{}", glslang_version()?);
-    println!("| folder | files | glslang accepts | translated, and accepted by naga | |");
-    println!("|---|---|---|---|---|");
-    let mut counts = Vec::new();
-    for folder in &folders {
-        let count = count_folder(folder, &includes)?;
-        let part = 100.0 * count.translated as f64 / count.accepted.max(1) as f64;
-        let Count { files, accepted, translated, .. } = &count;
-        println!("| {} | {files} | {accepted} | {translated} | {part:.1} % |", folder.display());
-        counts.push(count);
-    }
-    let mut causes: BTreeMap<String, (usize, PathBuf)> = BTreeMap::new();
-    for (cause, (files, example)) in counts.into_iter().flat_map(|count| count.causes) {
-        causes.entry(cause).or_insert((0, example)).0 += files;
-    }
-    let mut causes: Vec<_> = causes.into_iter().collect();
-    causes.sort_by_key(|(cause, (files, _))| (usize::MAX - files, cause.clone()));
-    println!("\n| files | cause | example |\n|---|---|---|");
-    for (cause, (files, example)) in causes {
-        println!("| {files} | {cause} | {} |", example.display());
-    }
-    Ok(())
-}
-
-fn glslang_version() -> Result<String, CommandFailure> {
-    let output = Command::new("glslangValidator").arg("--version").output();
-    let output = output.map_err(|error| {
-        CommandFailure::environment(format!("glslangValidator (glslang-tools): {error}"))
-    })?;
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    let version = text.lines().next().unwrap_or_default().to_owned();
-    Ok(format!("{version}; options: -V for texts with features of Vulkan, else none\n"))
-}
-
-fn count_folder(folder: &Path, includes: &[String]) -> Result<Count, CommandFailure> {
-    let mut files = Vec::new();
-    list_files(folder, &mut files)
-        .map_err(|error| CommandFailure::input(format!("`{}`: {error}", folder.display())))?;
-    files.sort();
-    let mut count = Count::default();
-    for file in files {
-        let ending = file.extension().unwrap_or_default().to_string_lossy().into_owned();
-        let Some((_, name, stage)) = STAGES.iter().find(|(known, _, _)| *known == ending) else {
-            continue;
+    let mut differences = Vec::new();
+    for folder in folders {
+        let folder = PathBuf::from(folder);
+        let suite = Suite::of(&folder);
+        let programs = match suite {
+            Suite::Cts => cts::programs(&folder)?,
+            Suite::Folder => folder::programs(&folder)?,
         };
-        count.files += 1;
-        let Some(text) = accepted_text(&file, name, includes) else { continue };
-        count.accepted += 1;
-        match translated(&text, *stage) {
-            Ok(()) => count.translated += 1,
-            Err(cause) => count.causes.entry(cause).or_insert((0, file)).0 += 1,
+        let table = tabulate(&programs);
+        println!("{}: {}", folder.display(), programs.len());
+        print!("{table}");
+        if !flags.is_empty() {
+            print!("{}", table.listed());
         }
+        differences.extend(table.compare(suite.name())?);
     }
-    Ok(count)
+    match differences.is_empty() {
+        true => Ok(()),
+        false => Err(CommandFailure::check(differences.join("\n"))),
+    }
 }
 
-fn list_files(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
-    for entry in std::fs::read_dir(folder)? {
-        let entry = entry?;
-        if entry.file_type()?.is_dir() {
-            list_files(&entry.path(), files)?;
-        } else {
-            files.push(entry.path());
-        }
+fn tabulate(programs: &[Program]) -> Table {
+    let mut table = Table::default();
+    for program in programs {
+        table.add(program, refusal(&program.text).as_ref());
     }
-    Ok(())
+    table
 }
 
-/// The preprocessed text of a file, if glslang accepts it.
-fn accepted_text(file: &Path, stage: &str, includes: &[String]) -> Option<String> {
-    let folder = format!("-I{}", file.parent()?.display());
-    let glslang = |options: &[&str]| {
-        let mut command = Command::new("glslangValidator");
-        command.args(["-S", stage]).args(options).arg(&folder).args(includes).arg(file);
-        command.stdin(Stdio::null()).output().ok().filter(|output| output.status.success())
-    };
-    let accepts = glslang(&[]).or_else(|| glslang(&["-V", "-o", "/dev/null"]));
-    accepts?;
-    let text = glslang(&["-E"])?.stdout;
-    String::from_utf8(text).ok()
-}
-
-/// Whether a text is translated to WGSL that naga accepts. The error is the cause, without names.
-fn translated(text: &str, stage: Stage) -> Result<(), String> {
-    let written = lamplight::glsl::translate(text, stage, SourceId(0), Default::default());
-    let (written, _) = written.map_err(|problems| {
-        problems.first().map_or(String::new(), |problem| problem.message.clone())
-    })?;
-    let composed = Composed::of_text(Language::Wesl, None, written.text);
-    match lamplight::validate::validate(&composed) {
-        Ok(_) => Ok(()),
-        Err(problems) => {
-            let first = problems.first().map_or("", |problem| problem.message.as_str());
-            Err(format!("naga refuses the translation: {first}"))
-        }
+/// Why the crate refuses a text for browsers: an error, or what is one for the target `wgsl`.
+fn refusal(text: &str) -> Option<Diagnostic> {
+    let is_wrong = |problem: &rules::Problem| problem.severity >= rules::Severity::Default;
+    if let Some(problem) = on_large_stack(|| rules::check(text)).into_iter().find(is_wrong) {
+        return Some(Diagnostic::error(codes::BROWSERS_REFUSE, problem.message));
     }
+    let packages = Packages::of_text("shader.wgsl", text.to_owned());
+    let (paths, settings) = (["shader.wgsl".to_owned()], Settings::default());
+    let request =
+        lint::Request { packages: &packages, manifest: None, settings: &settings, paths: &paths };
+    let found = lint::lint(&mut SourceSet::default(), &request).diagnostics;
+    found.into_iter().find(|one| one.severity == Severity::Error)
 }

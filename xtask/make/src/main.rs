@@ -20,6 +20,7 @@ const COMMANDS: &[XtaskCommand] = &[
     ("conformance", "translate GLSL of other projects", conformance::run),
     ("fuzz", "hostile inputs for every parser", fuzz::run),
     ("new", "write the files for a new entry", create::run),
+    ("conformance", "what is accepted of other people's suites", conformance::run),
     ("validate", "let the validators check a bundle", validate::run),
 ];
 

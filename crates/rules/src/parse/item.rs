@@ -10,7 +10,11 @@ impl<'t> Parser<'t> {
             if self.take(";") {
                 continue;
             }
+            let (place, count) = (self.token().place, self.diagnostics);
             let (attributes, filters) = self.attributes()?;
+            if !self.is("fn") {
+                self.refuse_filters(count, place);
+            }
             self.item(attributes, filters)?;
         }
         Ok(())
@@ -84,7 +88,7 @@ impl<'t> Parser<'t> {
         self.expect(")")?;
         let (result, result_attributes) = match self.take("->") {
             true => {
-                let (attributes, _) = self.attributes()?;
+                let attributes = self.plain_attributes()?;
                 (Some(self.type_name()?), attributes)
             }
             false => (None, Vec::new()),
@@ -118,7 +122,7 @@ impl<'t> Parser<'t> {
     fn members(&mut self, end: &str) -> Parsed<Vec<Member<'t>>> {
         let mut found = Vec::new();
         while !self.is(end) {
-            let (attributes, _) = self.attributes()?;
+            let attributes = self.plain_attributes()?;
             let place = self.token().place;
             let name = self.word()?;
             self.expect(":")?;

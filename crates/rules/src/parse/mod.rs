@@ -24,6 +24,7 @@ pub fn parse(text: &str) -> Option<Parsed<(Tree<'_>, Vec<Problem>)>> {
         problems: Vec::new(),
         depth: 0,
         is_in_function: false,
+        diagnostics: 0,
     };
     Some(parser.module().map(|()| (parser.tree, parser.problems)))
 }
@@ -36,6 +37,8 @@ pub struct Parser<'t> {
     depth: u16,
     /// Attributes belong to a statement.
     is_in_function: bool,
+    /// Attributes with a filter so far.
+    diagnostics: usize,
 }
 
 impl<'t> Parser<'t> {
@@ -142,7 +145,17 @@ impl<'t> Parser<'t> {
             let start = self.next().place.start;
             let name = self.word()?;
             if name == "diagnostic" {
-                filters.extend(self.diagnostic()?);
+                let filter = self.diagnostic()?;
+                let is_repeated = |filter: &Filter| {
+                    filters.iter().any(|known: &Filter| known.rule == filter.rule)
+                };
+                if filter.as_ref().is_some_and(is_repeated) {
+                    let place = Place { start, end: self.end() };
+                    let message = "a second `@diagnostic` for the same rule".to_owned();
+                    self.problems.push(Problem::new(Rule::Attribute, place, message));
+                }
+                filters.extend(filter);
+                self.diagnostics += 1;
                 if self.is_in_function {
                     let place = Place { start, end: self.end() };
                     self.tree.statement_filters.push(place);
@@ -157,6 +170,22 @@ impl<'t> Parser<'t> {
             attributes.push(Attribute { name, arguments, place });
         }
         Ok((attributes, filters))
+    }
+
+    /// Attributes where no filter of diagnostics may stand.
+    fn plain_attributes(&mut self) -> Parsed<Vec<Attribute<'t>>> {
+        let (place, count) = (self.token().place, self.diagnostics);
+        let (attributes, _) = self.attributes()?;
+        self.refuse_filters(count, place);
+        Ok(attributes)
+    }
+
+    /// Reports filters that were read since there were `count` of them.
+    fn refuse_filters(&mut self, count: usize, place: Place) {
+        if self.diagnostics > count {
+            let message = "`@diagnostic` does not belong here".to_owned();
+            self.problems.push(Problem::new(Rule::Attribute, place, message));
+        }
     }
 
     /// What stands in the brackets of `diagnostic`. Rules that are not known give nothing.

@@ -10,6 +10,9 @@ use crate::{Place, Problem, Rule};
 /// Assignments that compute with the value before.
 const COMPOUND: [&str; 10] = ["+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="];
 
+/// What begins a statement that has a filter of its own.
+const COMPOUND_STATEMENTS: [&str; 6] = ["{", "if", "switch", "loop", "for", "while"];
+
 impl<'t> Parser<'t> {
     /// A block with the attributes before it.
     pub fn block(&mut self) -> Parsed<Block<'t>> {
@@ -24,8 +27,12 @@ impl<'t> Parser<'t> {
     }
 
     fn statement(&mut self) -> Parsed<Statement<'t>> {
-        let start = self.token().place.start;
+        let (place, count) = (self.token().place, self.diagnostics);
+        let start = place.start;
         let (_, filters) = self.attributes()?;
+        if !COMPOUND_STATEMENTS.contains(&self.token().text) {
+            self.refuse_filters(count, place);
+        }
         let (kind, behaviour) = self.statement_kind()?;
         let place = Place { start, end: self.end() };
         Ok(Statement { kind, filters, place, behaviour })

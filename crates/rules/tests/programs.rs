@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::random::Random;
+use crate::random::Random;
 
 const MODULE: &str = "
 struct Pair { a: i32, b: array<i32, 4> }

@@ -1,0 +1,140 @@
+//! Small texts, each of which breaks one rule, and its neighbour that breaks none. Tint gives the
+//! same verdicts.
+
+use lamplight_rules::Rule;
+use libtest_mimic::{Failed, Trial};
+
+use crate::errors;
+
+const MODULE: &str = "
+@group(0) @binding(0) var t: texture_2d<f32>;
+@group(0) @binding(1) var s: sampler;
+@group(0) @binding(2) var<uniform> same: vec4i;
+@group(0) @binding(3) var<storage, read_write> changing: array<i32, 8>;
+var<workgroup> own: i32;
+";
+
+/// The body of a fragment or compute shader, the rule that it breaks, and what must be at the place.
+const FRAGMENT: &[(&str, Option<(Rule, &str)>)] = &[
+    ("if p.x > 1.0 { _ = dpdx(p); }", Some((Rule::Derivative, "dpdx(p)"))),
+    ("if same.x > 1 { _ = dpdx(p); }", None),
+    ("@diagnostic(off, derivative_uniformity) if p.x > 1.0 { _ = dpdx(p); }", None),
+    ("if p.x > 1.0 { @diagnostic(off, derivative_uniformity) { _ = dpdx(p); } }", None),
+    ("if p.x > 1.0 { return; } _ = fwidth(p);", Some((Rule::Derivative, "fwidth(p)"))),
+    ("if p.x > 1.0 { discard; } _ = fwidth(p);", None),
+    ("if p.x > 1.0 { _ = textureSampleLevel(t, s, p.xy, 0.0); }", None),
+    (
+        "loop { _ = textureSample(t, s, p.xy); continuing { break if p.x == 0.0; } }",
+        Some((Rule::Derivative, "textureSample(t, s, p.xy)")),
+    ),
+    ("var i = 0; if p.x > 1.0 { i = 1; } i = 2; if i == 2 { _ = dpdx(p); }", None),
+    ("let a = same.x & 1 == 1;", Some((Rule::Precedence, "same.x & 1 == 1"))),
+    ("let a = (same.x & 1) == 1;", None),
+    ("let a = true && false || true;", Some((Rule::Precedence, "true && false || true"))),
+    ("let a = 1u * 2u << 1u;", Some((Rule::Precedence, "1u * 2u << 1u"))),
+    ("let a = 1u << 2u * 1u;", Some((Rule::Precedence, "1u << 2u * 1u"))),
+    ("loop { }", Some((Rule::Behaviour, "loop { }"))),
+    ("for (;;) { }", Some((Rule::Behaviour, "for (;;) { }"))),
+    ("loop { return; }", None),
+    (
+        "loop { if p.x > 0.0 { continue; } let end = true; continuing { break if end; } }",
+        Some((Rule::Behaviour, "continue;")),
+    ),
+    ("let a = 4294967295;", Some((Rule::Constant, "4294967295"))),
+    ("let a = 4294967295u;", None),
+    ("let a = inverseSqrt(-2.0);", Some((Rule::Constant, "inverseSqrt(-2.0)"))),
+    (
+        "_ = textureSample(t, s, p.xy, vec2i(8, 0));",
+        Some((Rule::Constant, "textureSample(t, s, p.xy, vec2i(8, 0))")),
+    ),
+    ("_ = textureSample(t, s, p.xy, vec2i(7, -8));", None),
+];
+
+const COMPUTE: &[(&str, Option<(Rule, &str)>)] = &[
+    ("if i < 32 { workgroupBarrier(); }", Some((Rule::Barrier, "workgroupBarrier()"))),
+    ("if g.x < 32 { workgroupBarrier(); }", None),
+    ("if own == 1 { storageBarrier(); }", Some((Rule::Barrier, "storageBarrier()"))),
+    ("if workgroupUniformLoad(&own) == 1 { workgroupBarrier(); }", None),
+    ("if changing[0] == 1 { workgroupBarrier(); }", Some((Rule::Barrier, "workgroupBarrier()"))),
+    (
+        "@diagnostic(off, derivative_uniformity) if i < 3 { workgroupBarrier(); }",
+        Some((Rule::Barrier, "workgroupBarrier()")),
+    ),
+];
+
+/// Whole texts.
+const TEXTS: &[(&str, Option<Rule>)] = &[
+    ("fn f(x: i32) -> i32 { if x > 0 { return 1; } }", Some(Rule::Behaviour)),
+    ("fn f(x: i32) -> i32 { loop { return 1; } }", None),
+    ("var<private> a: atomic<i32>;", Some(Rule::Memory)),
+    ("@group(0) @binding(0) var<storage> a: atomic<i32>;", Some(Rule::Memory)),
+    ("var<workgroup> a: array<atomic<u32>, 4>;", None),
+    ("@workgroup_size(1) fn f() { }", Some(Rule::Attribute)),
+    ("@compute @workgroup_size(1i, 1u) fn f() { }", Some(Rule::Attribute)),
+    ("@id(1) const a = 1;", Some(Rule::Attribute)),
+    ("var<workgroup> a: i32;\n@fragment fn f() { _ = a; }", Some(Rule::Memory)),
+    (
+        "@group(0) @binding(0) var<storage, read_write> a: i32;\n\
+         @vertex fn f() -> @builtin(position) vec4f { a = 1; return vec4f(); }",
+        Some(Rule::Memory),
+    ),
+];
+
+pub fn tests() -> Vec<Trial> {
+    vec![
+        Trial::test("rules::fragments", || {
+            bodies(FRAGMENT, "@fragment fn main(@builtin(position) p: vec4f)")
+        }),
+        Trial::test("rules::computes", || {
+            bodies(
+                COMPUTE,
+                "@compute @workgroup_size(64) fn main(@builtin(local_invocation_index) i: u32, \
+                 @builtin(workgroup_id) g: vec3u)",
+            )
+        }),
+        Trial::test("rules::texts", texts),
+        Trial::test("rules::deep_texts", deep_texts),
+    ]
+}
+
+fn bodies(cases: &[(&str, Option<(Rule, &str)>)], head: &str) -> Result<(), Failed> {
+    for (body, expected) in cases {
+        let text = format!("{MODULE}{head} {{ {body} }}");
+        let found = errors(&text);
+        let first = found.first().map(|problem| (problem.rule, &text[problem.place.range()]));
+        if first != *expected {
+            return Err(format!("`{body}` gives {first:?}").into());
+        }
+    }
+    Ok(())
+}
+
+fn texts() -> Result<(), Failed> {
+    for (text, expected) in TEXTS {
+        let found = errors(text).first().map(|problem| problem.rule);
+        if found != *expected {
+            return Err(format!("`{text}` gives {found:?}").into());
+        }
+    }
+    Ok(())
+}
+
+/// What nests deeper than the analysis goes is told, whatever nests.
+fn deep_texts() -> Result<(), Failed> {
+    let many = |text: &str| text.repeat(5000);
+    let deep = [
+        format!("const a = {}1{};", many("("), many(")")),
+        format!("const a = {}1;", many("-")),
+        format!("const a = 1{};", many(" + 1")),
+        format!("fn f() {{ {}{} }}", many("{"), many("}")),
+        format!("fn f() {{ if true {{ }} {} }}", many("else if true { } ")),
+        format!("alias a = {}i32{};", many("array<"), many(">")),
+    ];
+    for text in deep {
+        let found = errors(&text).first().map(|problem| problem.rule);
+        if !matches!(found, Some(Rule::Depth | Rule::Grammar)) {
+            return Err(format!("{} gives {found:?}", &text[..40]).into());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,153 @@
+//! `cargo xtask conformance glsl DIR...`: how much of other people's GLSL is translated, beside what
+//! glslang accepts of it.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use lamplight::bundle::Language;
+use lamplight::compose::Composed;
+use lamplight::glsl::tree::Stage;
+use lamplight::source::SourceId;
+use xtask::{CommandFailure, CommandResult};
+
+/// How the names of files end, and the stage that this stands for.
+const STAGES: &[(&str, &str, Stage)] = &[
+    ("vert", "vert", Stage::Vertex),
+    ("vs", "vert", Stage::Vertex),
+    ("frag", "frag", Stage::Fragment),
+    ("fs", "frag", Stage::Fragment),
+    ("comp", "comp", Stage::Compute),
+    ("cs", "comp", Stage::Compute),
+];
+
+fn usage() -> CommandFailure {
+    CommandFailure::usage(
+        "usage: cargo xtask conformance glsl [-I DIR]... DIR...\n\n  \
+         -I DIR  where `#include` finds files, beside the folder of the file",
+    )
+}
+
+/// What became of the files of a folder.
+#[derive(Default)]
+struct Count {
+    files: usize,
+    /// Files that glslang accepts.
+    accepted: usize,
+    /// Of these, the files that are translated.
+    translated: usize,
+    /// Files by the reason for which they are not translated, with an example.
+    causes: BTreeMap<String, (usize, PathBuf)>,
+}
+
+/// Prints a table with a line for each folder, and then the causes of the rest.
+pub fn run(arguments: &[String]) -> CommandResult {
+    let (mut folders, mut includes) = (Vec::new(), Vec::new());
+    let mut rest = arguments.iter();
+    while let Some(argument) = rest.next() {
+        match argument.as_str() {
+            "-I" => includes.push(format!("-I{}", rest.next().ok_or_else(usage)?)),
+            folder if !folder.starts_with('-') => folders.push(PathBuf::from(folder)),
+            _ => return Err(usage()),
+        }
+    }
+    if folders.is_empty() {
+        return Err(usage());
+    }
+    println!("{}", glslang_version()?);
+    println!("| folder | files | glslang accepts | translated, and accepted by naga | |");
+    println!("|---|---|---|---|---|");
+    let mut counts = Vec::new();
+    for folder in &folders {
+        let count = count_folder(folder, &includes)?;
+        let part = 100.0 * count.translated as f64 / count.accepted.max(1) as f64;
+        let Count { files, accepted, translated, .. } = &count;
+        println!("| {} | {files} | {accepted} | {translated} | {part:.1} % |", folder.display());
+        counts.push(count);
+    }
+    let mut causes: BTreeMap<String, (usize, PathBuf)> = BTreeMap::new();
+    for (cause, (files, example)) in counts.into_iter().flat_map(|count| count.causes) {
+        causes.entry(cause).or_insert((0, example)).0 += files;
+    }
+    let mut causes: Vec<_> = causes.into_iter().collect();
+    causes.sort_by_key(|(cause, (files, _))| (usize::MAX - files, cause.clone()));
+    println!("\n| files | cause | example |\n|---|---|---|");
+    for (cause, (files, example)) in causes {
+        println!("| {files} | {cause} | {} |", example.display());
+    }
+    Ok(())
+}
+
+fn glslang_version() -> Result<String, CommandFailure> {
+    let output = Command::new("glslangValidator").arg("--version").output();
+    let output = output.map_err(|error| {
+        CommandFailure::environment(format!("glslangValidator (glslang-tools): {error}"))
+    })?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let version = text.lines().next().unwrap_or_default().to_owned();
+    Ok(format!("{version}; options: -V for texts with features of Vulkan, else none\n"))
+}
+
+fn count_folder(folder: &Path, includes: &[String]) -> Result<Count, CommandFailure> {
+    let mut files = Vec::new();
+    list_files(folder, &mut files)
+        .map_err(|error| CommandFailure::input(format!("`{}`: {error}", folder.display())))?;
+    files.sort();
+    let mut count = Count::default();
+    for file in files {
+        let ending = file.extension().unwrap_or_default().to_string_lossy().into_owned();
+        let Some((_, name, stage)) = STAGES.iter().find(|(known, _, _)| *known == ending) else {
+            continue;
+        };
+        count.files += 1;
+        let Some(text) = accepted_text(&file, name, includes) else { continue };
+        count.accepted += 1;
+        match translated(&text, *stage) {
+            Ok(()) => count.translated += 1,
+            Err(cause) => count.causes.entry(cause).or_insert((0, file)).0 += 1,
+        }
+    }
+    Ok(count)
+}
+
+fn list_files(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        if entry.file_type()?.is_dir() {
+            list_files(&entry.path(), files)?;
+        } else {
+            files.push(entry.path());
+        }
+    }
+    Ok(())
+}
+
+/// The preprocessed text of a file, if glslang accepts it.
+fn accepted_text(file: &Path, stage: &str, includes: &[String]) -> Option<String> {
+    let folder = format!("-I{}", file.parent()?.display());
+    let glslang = |options: &[&str]| {
+        let mut command = Command::new("glslangValidator");
+        command.args(["-S", stage]).args(options).arg(&folder).args(includes).arg(file);
+        command.stdin(Stdio::null()).output().ok().filter(|output| output.status.success())
+    };
+    let accepts = glslang(&[]).or_else(|| glslang(&["-V", "-o", "/dev/null"]));
+    accepts?;
+    let text = glslang(&["-E"])?.stdout;
+    String::from_utf8(text).ok()
+}
+
+/// Whether a text is translated to WGSL that naga accepts. The error is the cause, without names.
+fn translated(text: &str, stage: Stage) -> Result<(), String> {
+    let written = lamplight::glsl::translate(text, stage, SourceId(0), Default::default());
+    let (written, _) = written.map_err(|problems| {
+        problems.first().map_or(String::new(), |problem| problem.message.clone())
+    })?;
+    let composed = Composed::of_text(Language::Wesl, None, written.text);
+    match lamplight::validate::validate(&composed) {
+        Ok(_) => Ok(()),
+        Err(problems) => {
+            let first = problems.first().map_or("", |problem| problem.message.as_str());
+            Err(format!("naga refuses the translation: {first}"))
+        }
+    }
+}
