@@ -42,7 +42,9 @@ pub fn tokenize(text: &str) -> Option<Vec<Token<'_>>> {
     while at < tokens.len() {
         let token = tokens[at];
         let long = match token.kind {
-            Kind::Mark => LONG.iter().find(|long| is_joined(text, &tokens[at..], long)),
+            Kind::Mark if has_neighbour(&tokens[at..]) => {
+                LONG.iter().find(|long| is_joined(text, &tokens[at..], long))
+            }
             _ => None,
         };
         let length = long.map_or(1, |long| long.len());
@@ -53,6 +55,14 @@ pub fn tokenize(text: &str) -> Option<Vec<Token<'_>>> {
     let end = text.len() as u32;
     joined.push(Token { kind: Kind::End, text: "", place: Place { start: end, end } });
     Some(joined)
+}
+
+/// Whether a mark comes right after the first one.
+fn has_neighbour(tokens: &[Token<'_>]) -> bool {
+    match tokens {
+        [first, second, ..] => second.kind == Kind::Mark && second.place.start == first.place.end,
+        _ => false,
+    }
 }
 
 /// Whether the text goes on with an operator none of whose characters belongs to a template list.

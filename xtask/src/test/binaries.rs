@@ -97,7 +97,7 @@ pub fn choose(all: &[TestBinary], names: &[String]) -> Vec<TestBinary> {
 /// Packages that are optimised for a run of all tests, which interpret shaders, compile every
 /// permutation and draw. `Cargo.toml` has no such settings, since whoever runs the tests of one
 /// package waits for its build. The command line itself takes no time.
-const SLOW: [&str; 18] = [
+const SLOW: [&str; 19] = [
     "bundle",
     "check",
     "compose",
@@ -112,6 +112,7 @@ const SLOW: [&str; 18] = [
     "mutate",
     "permute",
     "picture",
+    "rules",
     "scene",
     "scenes",
     "syntax",

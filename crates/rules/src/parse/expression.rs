@@ -18,19 +18,22 @@ enum Level {
     ShortCircuit,
 }
 
-/// Binary operators by how tightly naga and the specification bind them, loosest first.
-const LEVELS: [&[&str]; 10] = [
-    &["||"],
-    &["&&"],
-    &["|"],
-    &["^"],
-    &["&"],
-    &["==", "!="],
-    &["<", ">", "<=", ">="],
-    &["<<", ">>"],
-    &["+", "-"],
-    &["*", "/", "%"],
-];
+/// How tightly a binary operator binds; the loosest is 1.
+fn tightness(operator: &str) -> Option<u8> {
+    Some(match operator {
+        "||" => 1,
+        "&&" => 2,
+        "|" => 3,
+        "^" => 4,
+        "&" => 5,
+        "==" | "!=" => 6,
+        "<" | ">" | "<=" | ">=" => 7,
+        "<<" | ">>" => 8,
+        "+" | "-" => 9,
+        "*" | "/" | "%" => 10,
+        _ => return None,
+    })
+}
 
 impl<'t> Parser<'t> {
     pub fn expression(&mut self) -> Parsed<ExprId> {
@@ -51,25 +54,25 @@ impl<'t> Parser<'t> {
         Ok(found)
     }
 
-    fn binary(&mut self, level: usize) -> Parsed<(ExprId, Level)> {
-        let Some(operators) = LEVELS.get(level) else { return self.unary() };
-        let (mut left, mut left_level) = self.binary(level + 1)?;
+    /// Operands with operators between them that bind at least so tightly.
+    fn binary(&mut self, least: u8) -> Parsed<(ExprId, Level)> {
+        let (mut left, mut left_level) = self.unary()?;
         let mut last: Option<&'t str> = None;
-        while let Some(operator) = self.operator(operators) {
-            let place = self.next().place;
-            let (right, right_level) = self.binary(level + 1)?;
+        loop {
+            let token = self.token();
+            let tightness = match token.kind {
+                Kind::Mark => tightness(token.text).filter(|own| *own >= least),
+                _ => None,
+            };
+            let Some(tightness) = tightness else { return Ok((left, left_level)) };
+            let (operator, place) = (token.text, self.next().place);
+            let (right, right_level) = self.binary(tightness + 1)?;
             let own = self.check_mixed(operator, last, (left_level, right_level), (left, place));
             let start = self.tree.place(left).start;
             left = self.add(ExprKind::Binary { operator, left, right }, start)?;
             left_level = own;
             last = Some(operator);
         }
-        Ok((left, left_level))
-    }
-
-    fn operator(&self, among: &[&str]) -> Option<&'t str> {
-        let token = self.token();
-        (token.kind == Kind::Mark && among.contains(&token.text)).then_some(token.text)
     }
 
     /// Reports operators that may not stand beside each other without brackets, and gives the level
