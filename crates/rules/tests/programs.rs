@@ -196,31 +196,7 @@ impl Writer<'_> {
     fn statement(&mut self, scope: &mut Scope, depth: usize) {
         let deep = depth > 5;
         match self.random.below(if deep { 14 } else { 23 }) {
-            0 => {
-                let (name, value) = (self.name("l"), self.number(scope, 2));
-                writeln!(self.text, "let {name} = {value};").unwrap();
-                scope.values.push(name);
-            }
-            1 => {
-                let (name, value) = (self.name("v"), self.number(scope, 2));
-                match self.random.chance(80) {
-                    true => writeln!(self.text, "var {name} = {value};").unwrap(),
-                    false => writeln!(self.text, "var {name}: i32;").unwrap(),
-                }
-                scope.numbers.push(name);
-            }
-            2 => {
-                let name = self.name("s");
-                match self.random.chance(50) {
-                    true => writeln!(self.text, "var {name}: Pair;").unwrap(),
-                    false => {
-                        let value = self.number(scope, 1);
-                        writeln!(self.text, "var {name} = Pair({value}, array(1, 2, 3, 4));")
-                            .unwrap();
-                    }
-                }
-                scope.pairs.push(name);
-            }
+            0..3 => self.declare(scope),
             3 => self.pointer(scope),
             4..7 => self.assign(scope),
             7..10 => self.operation(),
@@ -242,6 +218,36 @@ impl Writer<'_> {
             _ => {
                 self.filtered_block(scope, depth);
                 self.text.push('\n');
+            }
+        }
+    }
+
+    fn declare(&mut self, scope: &mut Scope) {
+        match self.random.below(3) {
+            0 => {
+                let (name, value) = (self.name("l"), self.number(scope, 2));
+                writeln!(self.text, "let {name} = {value};").unwrap();
+                scope.values.push(name);
+            }
+            1 => {
+                let (name, value) = (self.name("v"), self.number(scope, 2));
+                match self.random.chance(80) {
+                    true => writeln!(self.text, "var {name} = {value};").unwrap(),
+                    false => writeln!(self.text, "var {name}: i32;").unwrap(),
+                }
+                scope.numbers.push(name);
+            }
+            _ => {
+                let name = self.name("s");
+                match self.random.chance(50) {
+                    true => writeln!(self.text, "var {name}: Pair;").unwrap(),
+                    false => {
+                        let value = self.number(scope, 1);
+                        writeln!(self.text, "var {name} = Pair({value}, array(1, 2, 3, 4));")
+                            .unwrap();
+                    }
+                }
+                scope.pairs.push(name);
             }
         }
     }

@@ -59,9 +59,7 @@ fn telling(rule: Rule) -> Telling {
         | Rule::Behaviour
         | Rule::Memory
         | Rule::Attribute
-        | Rule::Constant => {
-            Telling { code: codes::BROWSERS_REFUSE, label: "here", help: None }
-        }
+        | Rule::Constant => Telling { code: codes::BROWSERS_REFUSE, label: "here", help: None },
     }
 }
 

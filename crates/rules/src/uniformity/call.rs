@@ -3,7 +3,7 @@
 use super::builtin::{self, Demand};
 use super::expression::Flow;
 use super::graph::{NodeId, Role, VARYING};
-use super::summary::{Operation, Requirement};
+use super::summary::{Operation, Parameter, Requirement};
 use super::{Filtered, Global, Root, Rule, Severity, View, Walk};
 use crate::Place;
 use crate::syntax::ExprId;
@@ -118,28 +118,18 @@ impl<'t> Walk<'_, 't> {
             if parameter.reaches_result {
                 self.graph.edge(result, argument.value);
             }
-            let (Some(contents), Some(view)) = (argument.contents, argument.view) else { continue };
+            let Some(contents) = argument.contents else { continue };
             if let Some(requirement) = &parameter.contents {
                 self.require(contents, requirement.clone(), place);
             }
             if parameter.contents_reach_result {
                 self.graph.edge(result, contents);
             }
-            let Root::Slot(slot) = view.root else { continue };
-            let output = self.graph.marked(place, Role::Value);
-            self.graph.edge(output, call);
-            if parameter.becomes_varying {
-                self.graph.edge(output, VARYING);
-            }
-            for source in &parameter.value_sources {
-                self.graph.edge(output, given[*source].value);
-            }
-            for source in &parameter.contents_sources {
-                if let Some(contents) = given[*source].contents {
-                    self.graph.edge(output, contents);
-                }
-            }
-            if view.is_partial {
+            let Some(View { root: Root::Slot(slot), is_partial, .. }) = argument.view else {
+                continue;
+            };
+            let output = self.output(parameter, place, call, given);
+            if is_partial {
                 self.graph.edge(output, contents);
             }
             outputs.push((slot, output));
@@ -150,6 +140,30 @@ impl<'t> Walk<'_, 't> {
         if let Some(requirement) = &summary.call_site {
             self.require(call, requirement.clone(), place);
         }
+    }
+
+    /// What a pointer leads to after a call.
+    fn output(
+        &mut self,
+        parameter: &Parameter,
+        place: Place,
+        call: NodeId,
+        given: &[Argument],
+    ) -> NodeId {
+        let output = self.graph.marked(place, Role::Value);
+        self.graph.edge(output, call);
+        if parameter.becomes_varying {
+            self.graph.edge(output, VARYING);
+        }
+        for source in &parameter.value_sources {
+            self.graph.edge(output, given[*source].value);
+        }
+        for source in &parameter.contents_sources {
+            if let Some(contents) = given[*source].contents {
+                self.graph.edge(output, contents);
+            }
+        }
+        output
     }
 
     /// The type of the parameter of that name.

@@ -231,9 +231,9 @@ impl<'t> Walk<'_, 't> {
         let mut exits = self.exits.iter_mut().rev();
         let Some(exit) = exits.find(|exit| !continues || exit.is_loop) else { return };
         let values = if continues { &mut exit.continued } else { &mut exit.values };
-        for slot in 0..exit.slots {
-            let node = *values[slot].get_or_insert_with(|| self.graph.node());
-            self.graph.edge(node, self.values[slot]);
+        for (value, now) in values.iter_mut().zip(&self.values) {
+            let node = *value.get_or_insert_with(|| self.graph.node());
+            self.graph.edge(node, *now);
         }
     }
 
