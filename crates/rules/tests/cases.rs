@@ -5,6 +5,8 @@ use lamplight_rules::Rule;
 use libtest_mimic::{Failed, Trial};
 
 use crate::errors;
+use crate::programs::program;
+use crate::random::Random;
 
 const MODULE: &str = "
 @group(0) @binding(0) var t: texture_2d<f32>;
@@ -94,6 +96,7 @@ pub fn tests() -> Vec<Trial> {
         }),
         Trial::test("rules::texts", texts),
         Trial::test("rules::deep_texts", deep_texts),
+        Trial::test("rules::damaged_texts", damaged_texts),
     ]
 }
 
@@ -135,6 +138,29 @@ fn deep_texts() -> Result<(), Failed> {
         if !matches!(found, Some(Rule::Depth | Rule::Grammar)) {
             return Err(format!("{} gives {found:?}", &text[..40]).into());
         }
+    }
+    Ok(())
+}
+
+/// Texts that are no programs any more get an answer too. naga has not read the text by then.
+fn damaged_texts() -> Result<(), Failed> {
+    let mut random = Random(7);
+    for seed in 0..400 {
+        let mut text = program(seed) + " \u{e9} @diagnostic(off, é) { }";
+        for _ in 0..1 + random.below(8) {
+            let (from, length) = (random.below(text.len()), random.below(12));
+            let from = text.floor_char_boundary(from);
+            let to = text.floor_char_boundary((from + length).min(text.len()));
+            let moved = text[from..to.max(from)].to_owned();
+            text.replace_range(from..to.max(from), "");
+            if random.chance(50) {
+                let at = text.floor_char_boundary(random.below(text.len()));
+                text.insert_str(at, &moved);
+            }
+        }
+        // What it finds does not matter: it must not panic.
+        let _ = errors(&text);
+        let _ = lamplight_rules::without_statement_filters(&text);
     }
     Ok(())
 }
