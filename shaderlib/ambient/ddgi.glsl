@@ -1,4 +1,6 @@
 //! Weights of the light probes around a point in an irradiance field (DDGI), from the distances that the probes see.
+//!
+//! Made from `ddgi.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_AMBIENT_DDGI_GLSL
 #define LAMPLIGHT_AMBIENT_DDGI_GLSL
@@ -34,7 +36,7 @@ float ddgi_chebyshev(float mean, float mean2, float dist, float least) {
 float ddgi_crushed(vec3 n, vec3 dir, float tri, float visibility) {
     float wrapped = 0.5 * clamp(dot(n, dir), -1.0, 1.0) + 0.5;
     float weight = max((wrapped * wrapped + 0.2) * visibility, 1e-6);
-    float crushed = (weight < 0.2 ? weight * weight * weight * 25.0 : weight);
+    float crushed = weight < 0.2 ? weight * weight * weight * 25.0 : weight;
     return crushed * max(tri, 0.001);
 }
 

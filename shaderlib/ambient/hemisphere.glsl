@@ -1,4 +1,6 @@
 //! Ambient light from a sky above and a ground below.
+//!
+//! Made from `hemisphere.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_AMBIENT_HEMISPHERE_GLSL
 #define LAMPLIGHT_AMBIENT_HEMISPHERE_GLSL

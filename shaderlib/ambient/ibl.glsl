@@ -1,4 +1,6 @@
 //! Ambient light from images of the surroundings. The caller reads the maps. These functions give directions and mip levels, and combine the results.
+//!
+//! Made from `ibl.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_AMBIENT_IBL_GLSL
 #define LAMPLIGHT_AMBIENT_IBL_GLSL

@@ -1,4 +1,6 @@
 //! Ambient occlusion: specular and horizon occlusion, multiple bounces of light, and the terms of GTAO and SSAO.
+//!
+//! Made from `occlusion.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_AMBIENT_OCCLUSION_GLSL
 #define LAMPLIGHT_AMBIENT_OCCLUSION_GLSL

@@ -1,4 +1,6 @@
 //! Directions as points of a square: the octahedron unfolded, for probes and for normals in two numbers.
+//!
+//! Made from `octahedral.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_AMBIENT_OCTAHEDRAL_GLSL
 #define LAMPLIGHT_AMBIENT_OCTAHEDRAL_GLSL
@@ -25,7 +27,7 @@ vec2 octahedral_encode(vec3 n) {
     if (m.z >= 0.0) {
         return e;
     }
-    vec2 side = vec2((e.x >= 0.0 ? 1.0 : -1.0), (e.y >= 0.0 ? 1.0 : -1.0));
+    vec2 side = vec2(e.x >= 0.0 ? 1.0 : -1.0, e.y >= 0.0 ? 1.0 : -1.0);
     return (vec2(1.0) - abs(e.yx)) * side;
 }
 
@@ -39,7 +41,7 @@ vec2 octahedral_encode(vec3 n) {
 vec3 octahedral_decode(vec2 e) {
     vec2 at = clamp(e, vec2(-1.0), vec2(1.0));
     float height = 1.0 - abs(at.x) - abs(at.y);
-    vec2 side = vec2((at.x >= 0.0 ? 1.0 : -1.0), (at.y >= 0.0 ? 1.0 : -1.0));
+    vec2 side = vec2(at.x >= 0.0 ? 1.0 : -1.0, at.y >= 0.0 ? 1.0 : -1.0);
     vec2 folded = at - side * max(-height, 0.0);
     return normalize(vec3(folded, height));
 }

@@ -1,7 +1,7 @@
 //! Published light probes: radiance around ten places as nine spherical harmonics, for
 //! `ambient::sh`.
 //!
-//! Made from `data/sh9_probes.toml` by `cargo xtask docs`: edit that file, not this one.
+//! Made from `probes.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_AMBIENT_PROBES_GLSL
 #define LAMPLIGHT_AMBIENT_PROBES_GLSL

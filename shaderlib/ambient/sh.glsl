@@ -2,6 +2,8 @@
 //! ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
 //!
 //! The results are irradiance: an environment of constant radiance 1 gives pi. Divide by pi for a Lambert surface.
+//!
+//! Made from `sh.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_AMBIENT_SH_GLSL
 #define LAMPLIGHT_AMBIENT_SH_GLSL

@@ -1,4 +1,6 @@
 //! A clear coat: a thin dielectric layer over another material.
+//!
+//! Made from `coat.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_BRDF_COAT_GLSL
 #define LAMPLIGHT_BRDF_COAT_GLSL

@@ -1,5 +1,7 @@
 //! Diffuse reflection. `lambert`, `half_lambert`, `wrap` and `oren_nayar` include the cosine n.l, but not the factor 1/pi.
 //! `burley` and `eon` are BRDFs: they include 1/pi, but not the cosine. `diffuse_transmission` includes both.
+//!
+//! Made from `diffuse.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_BRDF_DIFFUSE_GLSL
 #define LAMPLIGHT_BRDF_DIFFUSE_GLSL

@@ -1,6 +1,8 @@
 //! Energy of microfacet surfaces: the directional albedo of a lobe, and compensation for multiple scattering between facets.
 //!
 //! A pair `dfg` has the scale and the offset of the reflectance at normal incidence, in this order: some engines store the offset and the sum.
+//!
+//! Made from `energy.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_BRDF_ENERGY_GLSL
 #define LAMPLIGHT_BRDF_ENERGY_GLSL

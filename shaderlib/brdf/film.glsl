@@ -1,4 +1,6 @@
 //! Iridescence: the colours of a thin film over a material.
+//!
+//! Made from `film.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_BRDF_FILM_GLSL
 #define LAMPLIGHT_BRDF_FILM_GLSL
@@ -21,11 +23,11 @@
 /// Error model: absolute 3e-6 + 2^-21*difference/500.
 vec3 film_sensitivity(float difference, vec3 phase) {
     vec3 turns = vec3(1.681e-3, 1.7953e-3, 2.2084e-3) * difference;
-    vec3 wave = cos(6.2831853 * (turns - round(turns))) * phase;
+    vec3 wave = cos(6.2831853 * (turns - roundEven(turns))) * phase;
     float d2 = difference * difference;
     vec3 envelope = exp(vec3(-1.708547e-7, -3.6733088e-7, -2.6103525e-7) * d2);
     float second = 2.2399e-3 * difference;
-    float red = 0.15386831 * cos(6.2831853 * (second - round(second))) * phase.x * exp(-1.7876617e-7 * d2);
+    float red = 0.15386831 * cos(6.2831853 * (second - roundEven(second))) * phase.x * exp(-1.7876617e-7 * d2);
     vec3 seen = vec3(0.84659, 1.0002219, 1.0011225) * wave * envelope + vec3(red, 0.0, 0.0);
     return vec3(
         3.2404542 * seen.x - 1.5371385 * seen.y - 0.4985314 * seen.z,

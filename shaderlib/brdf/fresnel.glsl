@@ -1,4 +1,6 @@
 //! Fresnel reflectance: of dielectrics and conductors exactly, and in the forms that materials are described with.
+//!
+//! Made from `fresnel.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_BRDF_FRESNEL_GLSL
 #define LAMPLIGHT_BRDF_FRESNEL_GLSL

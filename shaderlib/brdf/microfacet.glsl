@@ -1,6 +1,8 @@
 //! Anisotropic microfacet terms, and geometric specular antialiasing.
 //!
 //! Cosines are named by their two directions: `th` is the tangent's and the half vector's, `bv` the bitangent's and the viewer's.
+//!
+//! Made from `microfacet.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_BRDF_MICROFACET_GLSL
 #define LAMPLIGHT_BRDF_MICROFACET_GLSL

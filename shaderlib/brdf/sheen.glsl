@@ -1,6 +1,8 @@
 //! Sheen: the light rim of cloth, from fibres that stand on the surface.
 //!
 //! Every `alpha` is squared perceptual roughness, also where a source passes the roughness itself.
+//!
+//! Made from `sheen.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_BRDF_SHEEN_GLSL
 #define LAMPLIGHT_BRDF_SHEEN_GLSL

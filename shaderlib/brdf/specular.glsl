@@ -1,4 +1,6 @@
 //! Highlights: the classic lobes, and the terms of a microfacet BRDF (`d_ggx * v_smith_ggx * f_schlick`).
+//!
+//! Made from `specular.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_BRDF_SPECULAR_GLSL
 #define LAMPLIGHT_BRDF_SPECULAR_GLSL

@@ -1,4 +1,6 @@
 //! Subsurface scattering by normalised diffusion: the distance between the points where light enters and leaves a body.
+//!
+//! Made from `subsurface.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_BRDF_SUBSURFACE_GLSL
 #define LAMPLIGHT_BRDF_SUBSURFACE_GLSL

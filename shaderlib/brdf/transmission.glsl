@@ -1,4 +1,6 @@
 //! Transmission: what passes a surface, where it goes, and what a volume absorbs of it.
+//!
+//! Made from `transmission.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_BRDF_TRANSMISSION_GLSL
 #define LAMPLIGHT_BRDF_TRANSMISSION_GLSL

@@ -1,6 +1,8 @@
 //! Tone curves: what a display of limited range shows of linear light.
 //!
 //! All take and give linear Rec. 709 colours; the transfer function of the display comes after them.
+//!
+//! Made from `tonemap.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_COLOR_TONEMAP_GLSL
 #define LAMPLIGHT_COLOR_TONEMAP_GLSL
@@ -75,7 +77,7 @@ vec3 neutral(vec3 c) {
     vec3 positive = clamp(c, vec3(0.0), vec3(1e10));
     float least = min(min(positive.x, positive.y), positive.z);
     // What a dielectric reflects at normal incidence is taken away.
-    float offset = (least < 0.08 ? least - 6.25 * least * least : 0.04);
+    float offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
     vec3 base = positive - offset;
     float peak = max(max(base.x, base.y), base.z);
     if (!(peak >= 0.76)) {
@@ -103,7 +105,7 @@ vec3 neutral_inverse(vec3 c) {
         base = max((base + (1.0 / less - 1.0) * peak) * less, vec3(0.0)) * (old / peak);
     }
     float least = min(min(base.x, base.y), base.z);
-    float offset = (least < 0.04 ? sqrt(least * 0.16) - least : 0.04);
+    float offset = least < 0.04 ? sqrt(least * 0.16) - least : 0.04;
     return base + offset;
 }
 
@@ -178,7 +180,7 @@ float uchimura_channel(float x) {
     float toe = 0.22 * safe_pow(x / 0.22, 1.33);
     float shoulder = 1.0 - 0.468 * exp(-2.1367521 * (x - 0.532));
     float from_toe = smoothstep(0.0, 0.22, x);
-    return (x >= 0.532 ? shoulder : mix(toe, x, from_toe));
+    return x >= 0.532 ? shoulder : mix(toe, x, from_toe);
 }
 
 /// A curve of a toe, a line and a shoulder.

@@ -1,4 +1,6 @@
 //! From linear light to what a screen shows: transfer functions, tone curves, fog.
+//!
+//! Made from `transfer.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_COLOR_TRANSFER_GLSL
 #define LAMPLIGHT_COLOR_TRANSFER_GLSL
@@ -172,7 +174,7 @@ float hlg_from_linear(float e) {
 /// Error model: absolute 2^-19.
 float linear_from_hlg(float code) {
     float x = clamp(code, 0.0, 1.0);
-    return (x <= 0.5 ? x * x / 3.0 : (exp((x - 0.55991073) / 0.17883277) + 0.28466892) / 12.0);
+    return x <= 0.5 ? x * x / 3.0 : (exp((x - 0.55991073) / 0.17883277) + 0.28466892) / 12.0;
 }
 
 /// A colour with noise that rounding turns into the right mean: without it, smooth gradients have bands.

@@ -1,4 +1,6 @@
 //! The separable Gaussian blur of variance shadow maps.
+//!
+//! Made from `gaussian.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_FILTER_GAUSSIAN_GLSL
 #define LAMPLIGHT_FILTER_GAUSSIAN_GLSL

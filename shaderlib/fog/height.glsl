@@ -1,4 +1,6 @@
 //! Fog that thins with height, in closed form along a straight view.
+//!
+//! Made from `height.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_FOG_HEIGHT_GLSL
 #define LAMPLIGHT_FOG_HEIGHT_GLSL

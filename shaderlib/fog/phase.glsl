@@ -1,6 +1,8 @@
 //! Phase functions: how much of the light that a particle scatters goes into each direction.
 //!
 //! `cos_theta` is the cosine of the scattering angle, by which the light is turned, with 1 straight on: `dot(-l, v)` for `l` towards the light and `v` towards the viewer. All are shares per steradian: their integral over the sphere is 1.
+//!
+//! Made from `phase.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_FOG_PHASE_GLSL
 #define LAMPLIGHT_FOG_PHASE_GLSL

@@ -1,4 +1,6 @@
 //! Lights with an area: spheres, disks, tubes, and rectangles by linearly transformed cosines.
+//!
+//! Made from `area.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_LIGHTING_AREA_GLSL
 #define LAMPLIGHT_LIGHTING_AREA_GLSL
@@ -34,7 +36,7 @@ vec3 ltc_edge(vec3 a, vec3 b) {
 /// Edges: (1, 0, 0) for a zero vector.
 /// Error model: absolute 4*2^-23.
 vec3 any_tangent(vec3 n) {
-    vec3 axis = (abs(n.x) > 0.6 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0));
+    vec3 axis = abs(n.x) > 0.6 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
     return safe_normalize(cross(n, axis), vec3(1.0, 0.0, 0.0));
 }
 
@@ -181,7 +183,7 @@ float area_alpha(float alpha, float radius, float d) {
     float size = max(radius, 0.0);
     // Nearer than a quarter of the size the sum is above 1.
     if (!(d > 0.25 * size)) {
-        return (size > 0.0 ? 1.0 : clamp(alpha, 0.0, 1.0));
+        return size > 0.0 ? 1.0 : clamp(alpha, 0.0, 1.0);
     }
     return clamp(alpha + 0.5 * size / d, 0.0, 1.0);
 }

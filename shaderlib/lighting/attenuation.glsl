@@ -1,4 +1,6 @@
 //! How light weakens with distance. Each function is one factor; multiply the ones you want.
+//!
+//! Made from `attenuation.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_LIGHTING_ATTENUATION_GLSL
 #define LAMPLIGHT_LIGHTING_ATTENUATION_GLSL

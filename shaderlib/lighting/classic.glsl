@@ -1,4 +1,6 @@
 //! The light loop of the classic books: add up each light's terms, then apply the surface's colour.
+//!
+//! Made from `classic.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_LIGHTING_CLASSIC_GLSL
 #define LAMPLIGHT_LIGHTING_CLASSIC_GLSL

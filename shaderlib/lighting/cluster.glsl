@@ -1,4 +1,6 @@
 //! Clustered shading: the cell of the view frustum that contains a point. Each cell has its own list of lights.
+//!
+//! Made from `cluster.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_LIGHTING_CLUSTER_GLSL
 #define LAMPLIGHT_LIGHTING_CLUSTER_GLSL
@@ -22,7 +24,7 @@ uint cluster_slice(float z, float near, float far, uint count) {
         return 0u;
     }
     float at = float(count) * (log2(z / first) / log2(far / first));
-    return min(uint(min(at, 65535.0)), count - 1u);
+    return min(uint(max(min(at, 65535.0), 0.0)), count - 1u);
 }
 
 /// The distance at which a slice begins.
@@ -48,8 +50,8 @@ float slice_depth(uint index, float near, float far, uint count) {
 uint cluster_index(vec2 uv, float z, float near, float far, uvec3 counts) {
     vec2 size = vec2(float(counts.x), float(counts.y));
     vec2 at = max(min(uv * size, size - 1.0), vec2(0.0));
-    uint x = uint(at.x);
-    uint y = uint(at.y);
+    uint x = uint(min(at.x, 4294967040.0));
+    uint y = uint(min(at.y, 4294967040.0));
     return x + counts.x * (y + counts.y * cluster_slice(z, near, far, counts.z));
 }
 

@@ -1,11 +1,13 @@
 //! One light of any kind, and what arrives from it at a point.
+//!
+//! Made from `light.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_LIGHTING_LIGHT_GLSL
 #define LAMPLIGHT_LIGHTING_LIGHT_GLSL
 
+#include "../math/safe.glsl"
 #include "attenuation.glsl"
 #include "spot.glsl"
-#include "../math/safe.glsl"
 
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"

@@ -1,4 +1,6 @@
 //! What a surface does with light, and how a fragment chooses among an array of materials.
+//!
+//! Made from `material.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_LIGHTING_MATERIAL_GLSL
 #define LAMPLIGHT_LIGHTING_MATERIAL_GLSL

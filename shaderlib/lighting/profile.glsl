@@ -1,4 +1,6 @@
 //! Where the profile or the picture of a light is read: photometric files and cookies.
+//!
+//! Made from `profile.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_LIGHTING_PROFILE_GLSL
 #define LAMPLIGHT_LIGHTING_PROFILE_GLSL
@@ -31,11 +33,11 @@ vec2 ies_uv(vec3 l, vec3 axis, vec3 right) {
     float x = dot(away, right);
     float y = dot(away, cross(axis, right));
     // Zeros have signs, which would choose between turns.
-    float turn = (x < 0.0 ? 0.5 : 0.0);
+    float turn = x < 0.0 ? 0.5 : 0.0;
     if (y != 0.0) {
         turn = 0.15915494 * atan(y, x);
     }
-    return vec2(ies_u(dot(away, axis)), (turn < 0.0 ? turn + 1.0 : turn));
+    return vec2(ies_u(dot(away, axis)), turn < 0.0 ? turn + 1.0 : turn);
 }
 
 /// The texture coordinates for a light cookie: a picture that a light projects.

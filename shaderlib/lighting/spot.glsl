@@ -1,4 +1,6 @@
 //! The cone of a spot light: a factor from the cosine `c = dot(-l, axis)` between the ray and the axis.
+//!
+//! Made from `spot.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_LIGHTING_SPOT_GLSL
 #define LAMPLIGHT_LIGHTING_SPOT_GLSL

@@ -1,4 +1,6 @@
 //! Photometric units: from the numbers on a lamp and on a camera to those of a shader.
+//!
+//! Made from `units.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_LIGHTING_UNITS_GLSL
 #define LAMPLIGHT_LIGHTING_UNITS_GLSL

@@ -1,4 +1,6 @@
 //! Matrices that WGSL has no function for.
+//!
+//! Made from `matrix.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_MATH_MATRIX_GLSL
 #define LAMPLIGHT_MATH_MATRIX_GLSL

@@ -1,4 +1,6 @@
 //! Noise for sampling: cheap, repeatable, and exact where it is made of integers.
+//!
+//! Made from `noise.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_MATH_NOISE_GLSL
 #define LAMPLIGHT_MATH_NOISE_GLSL
@@ -39,7 +41,7 @@ uint hash_pcg(uint seed) {
 /// Edges: a negative position counts as 0; indeterminate from 2^32 on.
 /// Error model: exact.
 uint pixel_seed(vec2 pixel) {
-    return hash_pcg(uint(max(pixel.x, 0.0)) + hash_pcg(uint(max(pixel.y, 0.0))));
+    return hash_pcg(uint(min(max(pixel.x, 0.0), 4294967040.0)) + hash_pcg(uint(min(max(pixel.y, 0.0), 4294967040.0))));
 }
 
 /// A number in [0, 1) from the upper 24 bits of a hash.

@@ -1,4 +1,6 @@
 //! Arithmetic that has a value everywhere: no NaN, no infinity from ordinary inputs.
+//!
+//! Made from `safe.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_MATH_SAFE_GLSL
 #define LAMPLIGHT_MATH_SAFE_GLSL

@@ -1,9 +1,12 @@
 #version 450
-//! One direction of a Gaussian blur of 21 texels. Bindings are tabulated in blur.wesl.
+//! The fragment stage of `blur`, which `blur.wesl` describes.
+//!
+//! Made from `blur.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #include "../filter/gaussian.glsl"
 
 layout(location = 0) in vec2 in_uv;
+
 layout(location = 0) out vec4 out_color;
 
 layout(set = 0, binding = 0) uniform texture2D blurred;

@@ -4,12 +4,17 @@
 //! The parts are the quarters of one map. A matrix leads to its quarter: the parts from the first to
 //! the last are at the upper left, the upper right, the lower left and the lower right. A host that
 //! makes the matrices leaves as many texels around what a part covers as the filter reads.
+//!
+//! Made from `cascades.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_PROGRAMS_CASCADES_GLSL
 #define LAMPLIGHT_PROGRAMS_CASCADES_GLSL
 
+#if CASCADES
 #include "../shadow/cascade.glsl"
+#endif
 
+#if CASCADES
 /// The parts of the map, from the nearest to the farthest.
 layout(std140, set = 2, binding = 10) uniform Cascades {
     /// From the world to the clip space of the whole map.
@@ -41,5 +46,6 @@ CascadePair cascade_pair(float view_depth) {
     bool is_last = !(cascades.splits[after] > cascades.splits[min(here, 3)]);
     return CascadePair(here, is_last ? 4 : after, share);
 }
+#endif
 
 #endif

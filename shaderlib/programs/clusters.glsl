@@ -1,11 +1,16 @@
 //! Lists of lamps for the cells of the view frustum, for `forward` with `clustered`. The lists are
 //! in a uniform block, so every target has them.
+//!
+//! Made from `clusters.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_PROGRAMS_CLUSTERS_GLSL
 #define LAMPLIGHT_PROGRAMS_CLUSTERS_GLSL
 
+#if CLUSTERED
 #include "../lighting/cluster.glsl"
+#endif
 
+#if CLUSTERED
 /// The lists of all cells, and their indices: at most 2048 cells, 7680 indices and 255 lamps.
 layout(std140, set = 1, binding = 15) uniform Clusters {
     /// Number of cells across, down and in depth, each at least 1.
@@ -35,5 +40,6 @@ uint listed_lamp(uint place) {
     uint at = min(place, 7679u);
     return (clusters.indices[at >> 4u][(at >> 2u) & 3u] >> (8u * (at & 3u))) & 255u;
 }
+#endif
 
 #endif

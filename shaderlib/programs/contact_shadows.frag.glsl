@@ -1,12 +1,17 @@
 #version 450
-//! Shadows of small things by a march through the depth buffer. Bindings are tabulated in contact_shadows.wesl.
+//! The fragment stage of `contact_shadows`, which `contact_shadows.wesl` describes.
+//!
+//! Made from `contact_shadows.wesl` by `cargo xtask docs`: edit that, not this file.
 
+#if JITTER
 #include "../math/noise.glsl"
+#endif
 #include "../math/safe.glsl"
 #include "../shadow/contact.glsl"
 #include "../shadow/coord.glsl"
 
 layout(location = 0) in vec2 in_uv;
+
 layout(location = 0) out vec4 out_color;
 
 layout(set = 0, binding = 0) uniform texture2D depth_buffer;

@@ -1,18 +1,28 @@
 #version 450
-//! Light for what `gbuffer` has drawn: the fragment stage. Bindings are tabulated in deferred.wesl.
+//! The fragment stage of `deferred`, which `deferred.wesl` describes.
+//!
+//! Made from `deferred.wesl` by `cargo xtask docs`: edit that, not this file.
 
-#include "../ambient/octahedral.glsl"
-#include "../math/safe.glsl"
-#include "forward/ambient.glsl"
-#if OCCLUSION == OCCLUSION_SCREEN || CONTACT
-layout(set = 1, binding = 8) uniform sampler open_sampler;
-#endif
 #if LIGHTS != LIGHTS_NONE
-#include "forward/lamps.glsl"
-#include "forward/environment.glsl"
+#include "../ambient/occlusion.glsl"
+#endif
+#include "../ambient/octahedral.glsl"
+#if LIGHTS != LIGHTS_NONE
+#include "../lighting/classic.glsl"
+#endif
+#if SATURATE
+#include "../math/safe.glsl"
+#endif
+#if LIGHTS != LIGHTS_NONE && AREA == AREA_RECTANGLE && SPECULAR == SPECULAR_GGX
+#include "areas.glsl"
+#endif
+#include "forward.glsl"
+#if LIGHTS != LIGHTS_NONE && METALLIC_ROUGHNESS
+#include "layers.glsl"
 #endif
 
 layout(location = 0) in vec2 in_uv;
+
 layout(location = 0) out vec4 out_color;
 
 #if LIGHTS != LIGHTS_NONE
@@ -21,25 +31,22 @@ layout(std140, set = 2, binding = 1) uniform Eye {
     /// The inverse of the matrix that the surfaces were drawn with.
     mat4 world_from_clip;
 } eye;
-
-layout(set = 2, binding = 4) uniform texture2D surface_depth;
 #endif
 
 layout(set = 2, binding = 2) uniform texture2D surface_color;
 layout(set = 2, binding = 3) uniform texture2D surface_normal;
+#if LIGHTS != LIGHTS_NONE
+layout(set = 2, binding = 4) uniform texture2D surface_depth;
+#endif
 layout(set = 2, binding = 5) uniform sampler surface_sampler;
 #if METALLIC_ROUGHNESS
 layout(set = 2, binding = 6) uniform texture2D surface_factors;
 #endif
 
 #if OCCLUSION == OCCLUSION_SCREEN
-#include "../ambient/occlusion.glsl"
-
-layout(set = 1, binding = 7) uniform texture2D seen_occlusion;
-
 /// The open share of the surroundings, [0, 1].
-float open_share() {
-    vec2 place = gl_FragCoord.xy / vec2(textureSize(sampler2D(seen_occlusion, open_sampler), 0));
+float open_share(vec2 pixel) {
+    vec2 place = pixel / vec2(textureSize(sampler2D(seen_occlusion, open_sampler), 0));
     return textureLod(sampler2D(seen_occlusion, open_sampler), place, 0.0).x;
 }
 #endif
@@ -49,14 +56,16 @@ float open_share() {
 vec3 shade(vec3 base, vec3 normal, uint material) {
     float depth = textureLod(sampler2D(surface_depth, surface_sampler), in_uv, 0.0).x;
     vec4 place = eye.world_from_clip * vec4(2.0 * in_uv.x - 1.0, 1.0 - 2.0 * in_uv.y, depth, 1.0);
-    Surface surface;
+    Surface surface = zero_surface();
     surface.position = place.xyz / place.w;
     surface.normal = normal;
-#if NEEDS_VIEW
+#if SPECULAR != SPECULAR_NONE || DIFFUSE == DIFFUSE_OREN_NAYAR || AMBIENT == AMBIENT_IBL
     surface.view = towards_viewer(surface.position);
 #endif
-#if MATERIAL == MATERIAL_ARRAY
-    surface.material = materials.items[min(material, uint(MATERIALS - 1))];
+#if MATERIAL == MATERIAL_ARRAY && TWO_SIDED
+    surface.material = materials.items[min(material, 27u)];
+#elif MATERIAL == MATERIAL_ARRAY
+    surface.material = materials.items[min(material, 13u)];
 #else
     surface.material = materials.items[0];
 #endif
@@ -68,12 +77,12 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
     surface.layered = layered(base, factors.y, surface.normal, surface.view, own);
 #endif
 #if OCCLUSION == OCCLUSION_SCREEN
-    float open = open_share();
-#if METALLIC_ROUGHNESS
-    surface.material.ambient *= multibounce(open, base);
-#else
-    surface.material.ambient *= multibounce(open, base * surface.material.diffuse);
+    float open = open_share(gl_FragCoord.xy);
 #endif
+#if OCCLUSION == OCCLUSION_SCREEN && METALLIC_ROUGHNESS
+    surface.material.ambient *= multibounce(open, base);
+#elif OCCLUSION == OCCLUSION_SCREEN
+    surface.material.ambient *= multibounce(open, base * surface.material.diffuse);
 #endif
 #if CASCADES
     surface.visibility = cascaded_visibility(surface, gl_FragCoord.xy);
@@ -87,21 +96,19 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
     surface.lobe = table_lobe(dot(surface.normal, surface.view), surface.material.roughness);
 #endif
     Accum sum = lit(surface);
-#if METALLIC_ROUGHNESS
-    Around around = light_around(surface, sum.scattered);
-#if OCCLUSION == OCCLUSION_SCREEN && AMBIENT == AMBIENT_IBL
-    around = occluded(around, surface.layered, open);
-#endif
-    return layered_ambient(surface.layered, around, surface.material.emission) + sum.reflected;
-#else
-#if AMBIENT == AMBIENT_IBL
-#if OCCLUSION == OCCLUSION_SCREEN
+#if OCCLUSION == OCCLUSION_SCREEN && AMBIENT == AMBIENT_IBL && !METALLIC_ROUGHNESS
     // The highlights of lamps are summed up, so only the mirrored environment loses by occlusion.
-    float nv = dot(surface.normal, surface.view);
-    surface.material.specular *= specular_occlusion(nv, open, highlight_alpha(surface.material));
+    surface.material.specular *= specular_occlusion(dot(surface.normal, surface.view), open, highlight_alpha(surface.material));
 #endif
+#if AMBIENT == AMBIENT_IBL && !METALLIC_ROUGHNESS
     sum = add_environment(sum, surface);
 #endif
+#if METALLIC_ROUGHNESS && OCCLUSION == OCCLUSION_SCREEN && AMBIENT == AMBIENT_IBL
+    Around around = occluded(light_around(surface, sum.scattered), surface.layered, open);
+    return layered_ambient(surface.layered, around, surface.material.emission) + sum.reflected;
+#elif METALLIC_ROUGHNESS
+    return layered_ambient(surface.layered, light_around(surface, sum.scattered), surface.material.emission) + sum.reflected;
+#else
     return resolve(base, surface.material, sum);
 #endif
 }
@@ -117,10 +124,11 @@ void main() {
 #if LIGHTS == LIGHTS_NONE
     vec3 color = base.rgb * ambient_light(normal);
 #else
-    vec3 color = shade(base.rgb, normal, uint(255.0 * packed_normal.z + 0.5));
+    vec3 color = shade(base.rgb, normal, uint(clamp(255.0 * packed_normal.z + 0.5, 0.0, 4294967040.0)));
 #endif
 #if SATURATE
-    color = saturate_color(color);
-#endif
+    out_color = vec4(saturate_color(color), base.a);
+#else
     out_color = vec4(color, base.a);
+#endif
 }

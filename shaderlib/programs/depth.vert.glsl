@@ -1,7 +1,7 @@
 #version 450
-//! Depth only, as a light sees it: the pass before a lookup by `shadow::compare`.
-//! There is no fragment stage. The pipeline or the lookup applies the bias.
-//! Bindings as in depth.wesl.
+//! The vertex stage of `depth`, which `depth.wesl` describes.
+//!
+//! Made from `depth.wesl` by `cargo xtask docs`: edit that, not this file.
 
 layout(location = 0) in vec3 in_position;
 

@@ -1,9 +1,14 @@
 #version 450
-//! A depth map as a picture. Bindings are tabulated in depth_view.wesl.
+//! The fragment stage of `depth_view`, which `depth_view.wesl` describes.
+//!
+//! Made from `depth_view.wesl` by `cargo xtask docs`: edit that, not this file.
 
+#if CURVE == CURVE_LINEAR || CURVE == CURVE_IGL
 #include "../shadow/coord.glsl"
+#endif
 
 layout(location = 0) in vec2 in_uv;
+
 layout(location = 0) out vec4 out_color;
 
 layout(set = 0, binding = 0) uniform texture2D depths;

@@ -1,9 +1,37 @@
 #version 450
-//! The fragment stage of `forward`. Bindings and locations are tabulated in forward.wesl.
-// Stage variables have prefixes: naga lets the members of a block hide globals of their names.
+//! The fragment stage of `forward`, which `forward.wesl` describes.
+//!
+//! Made from `forward.wesl` by `cargo xtask docs`: edit that, not this file.
 
+#if LIGHTS == LIGHTS_NONE && AMBIENT == AMBIENT_IBL
+#include "../ambient/ibl.glsl"
+#endif
+#if FREQUENCY != FREQUENCY_VERTEX && LIGHTS != LIGHTS_NONE
+#include "../ambient/occlusion.glsl"
+#endif
+#if CURVE != CURVE_NONE
+#include "../color/tonemap.glsl"
+#endif
+#if FOG == FOG_LINEAR || FOG == FOG_EXP2 || CURVE == CURVE_REINHARD || CURVE == CURVE_ACES
+#include "../color/transfer.glsl"
+#endif
+#if FOG == FOG_HEIGHT
+#include "../fog/height.glsl"
+#endif
+#if FOG != FOG_NONE && FOG_SUN
+#include "../fog/phase.glsl"
+#endif
+#include "../lighting/classic.glsl"
+#include "../lighting/material.glsl"
 #include "../math/safe.glsl"
-#include "forward/camera.glsl"
+#if FREQUENCY != FREQUENCY_VERTEX && LIGHTS != LIGHTS_NONE
+#include "../surface/normal.glsl"
+#include "areas.glsl"
+#endif
+#include "forward.glsl"
+#if MATERIAL_MAPS || FREQUENCY != FREQUENCY_VERTEX && LIGHTS != LIGHTS_NONE
+#include "layers.glsl"
+#endif
 
 layout(location = 0) in vec3 in_position;
 #if FREQUENCY == FREQUENCY_FRAGMENT
@@ -31,32 +59,7 @@ layout(location = 8) in vec3 in_reflected;
 
 layout(location = 0) out vec4 out_color;
 
-#if BASE_MAP
-layout(set = 1, binding = 1) uniform texture2D base_map;
-#endif
-#if NORMAL_MAP
-layout(set = 1, binding = 2) uniform texture2D normal_map;
-#endif
-#if LIGHTMAP
-layout(set = 1, binding = 3) uniform texture2D light_map;
-#endif
-#if BASE_MAP || NORMAL_MAP || LIGHTMAP || MATERIAL_MAPS || OCCLUSION == OCCLUSION_MAP
-layout(set = 1, binding = 4) uniform sampler map_sampler;
-#endif
-#if OCCLUSION == OCCLUSION_MAP
-layout(set = 1, binding = 6) uniform texture2D occlusion_map;
-#elif OCCLUSION == OCCLUSION_SCREEN
-layout(set = 1, binding = 7) uniform texture2D seen_occlusion;
-#endif
-#if OCCLUSION == OCCLUSION_SCREEN || CONTACT
-layout(set = 1, binding = 8) uniform sampler open_sampler;
-#endif
-
 #if FOG != FOG_NONE
-#include "../color/transfer.glsl"
-#include "../fog/height.glsl"
-#include "../fog/phase.glsl"
-
 /// The fog that colours fade into with distance.
 layout(std140, set = 0, binding = 3) uniform Haze {
     vec3 color;
@@ -76,7 +79,48 @@ layout(std140, set = 0, binding = 3) uniform Haze {
     /// `fog_sun`: unit, in the world.
     vec3 to_sun;
 } haze;
+#endif
 
+#if BASE_MAP
+layout(set = 1, binding = 1) uniform texture2D base_map;
+#endif
+#if NORMAL_MAP
+layout(set = 1, binding = 2) uniform texture2D normal_map;
+#endif
+#if LIGHTMAP
+layout(set = 1, binding = 3) uniform texture2D light_map;
+#endif
+#if BASE_MAP || NORMAL_MAP || LIGHTMAP || MATERIAL_MAPS || OCCLUSION == OCCLUSION_MAP
+layout(set = 1, binding = 4) uniform sampler map_sampler;
+#endif
+#if OCCLUSION == OCCLUSION_MAP
+layout(set = 1, binding = 6) uniform texture2D occlusion_map;
+#endif
+#if MATERIAL_MAPS
+layout(set = 2, binding = 7) uniform texture2D metallic_roughness_map;
+layout(set = 2, binding = 8) uniform texture2D emission_map;
+layout(set = 2, binding = 9) uniform texture2D specular_map;
+#endif
+#if MATERIAL_MAPS && CLEARCOAT
+layout(set = 2, binding = 1) uniform texture2D clearcoat_map;
+#endif
+#if MATERIAL_MAPS && SHEEN
+layout(set = 2, binding = 2) uniform texture2D sheen_map;
+#endif
+#if MATERIAL_MAPS && IRIDESCENCE
+layout(set = 2, binding = 3) uniform texture2D iridescence_map;
+#endif
+#if MATERIAL_MAPS && ANISOTROPY
+layout(set = 2, binding = 4) uniform texture2D anisotropy_map;
+#endif
+#if MATERIAL_MAPS && (TRANSMISSION || VOLUME)
+layout(set = 2, binding = 5) uniform texture2D transmission_map;
+#endif
+#if MATERIAL_MAPS && DIFFUSE_TRANSMISSION
+layout(set = 2, binding = 6) uniform texture2D diffuse_transmission_map;
+#endif
+
+#if FOG != FOG_NONE
 /// The colour of a point, faded with its distance from the viewer.
 vec3 hazy(vec3 color, vec3 position) {
     vec3 eye = camera.world_from_view[3].xyz;
@@ -93,7 +137,7 @@ vec3 hazy(vec3 color, vec3 position) {
     return mix(air, color, fog_linear(reach, haze.start, haze.end));
 #elif FOG == FOG_EXP2
     return mix(air, color, fog_exp2(reach, haze.density));
-#else
+#elif FOG == FOG_HEIGHT
     float depth = fog_height(eye.y, view.y, reach, haze.density, haze.falloff, haze.base);
     return mix(air, color, fog_transmittance(depth));
 #endif
@@ -101,9 +145,6 @@ vec3 hazy(vec3 color, vec3 position) {
 #endif
 
 #if CURVE != CURVE_NONE
-#include "../color/tonemap.glsl"
-#include "../color/transfer.glsl"
-
 /// What the display should show of the light: linear, [0, 1].
 vec3 toned(vec3 color) {
 #if CURVE == CURVE_REINHARD
@@ -118,50 +159,101 @@ vec3 toned(vec3 color) {
     return hable(color);
 #elif CURVE == CURVE_NEUTRAL
     return neutral(color);
-#else
+#elif CURVE == CURVE_UCHIMURA
     return uchimura(color);
 #endif
 }
 #endif
 
+#if MATERIAL_MAPS
+/// The factors, multiplied with the textures of the extensions.
+Factors mapped_factors(Factors plain, vec2 uv) {
+    Factors own = plain;
+    vec4 reflecting = texture(sampler2D(specular_map, map_sampler), uv);
+    own.specular_color *= reflecting.rgb;
+    own.specular *= reflecting.a;
+#if CLEARCOAT
+    vec4 coat = texture(sampler2D(clearcoat_map, map_sampler), uv);
+    own.clearcoat *= coat.x;
+    own.clearcoat_roughness *= coat.y;
+#endif
+#if SHEEN
+    vec4 fibres = texture(sampler2D(sheen_map, map_sampler), uv);
+    own.sheen_color *= fibres.rgb;
+    own.sheen_roughness *= fibres.a;
+#endif
+#if IRIDESCENCE
+    vec4 film = texture(sampler2D(iridescence_map, map_sampler), uv);
+    own.iridescence *= film.x;
+    own.iridescence_thickness = mix(layers.iridescence_least, own.iridescence_thickness, film.y);
+#endif
+#if ANISOTROPY
+    vec4 brush = texture(sampler2D(anisotropy_map, map_sampler), uv);
+    // The factor turns the direction of the texture.
+    vec2 way = 2.0 * brush.xy - 1.0;
+    vec2 turn = own.anisotropy_direction;
+    vec3 turned = vec3(turn.x * way.x - turn.y * way.y, turn.y * way.x + turn.x * way.y, 0.0);
+    own.anisotropy_direction = safe_normalize(turned, vec3(1.0, 0.0, 0.0)).xy;
+    own.anisotropy *= brush.z;
+#endif
+#if TRANSMISSION || VOLUME
+    vec4 passing = texture(sampler2D(transmission_map, map_sampler), uv);
+#if TRANSMISSION
+    own.transmission *= passing.x;
+#endif
+#if VOLUME
+    own.thickness *= passing.y;
+#endif
+#endif
+#if DIFFUSE_TRANSMISSION
+    vec4 leaf = texture(sampler2D(diffuse_transmission_map, map_sampler), uv);
+    own.diffuse_transmission_color *= leaf.rgb;
+    own.diffuse_transmission *= leaf.a;
+#endif
+    return own;
+}
+#endif
+
+#if OCCLUSION == OCCLUSION_MAP
+/// The open share of the surroundings, [0, 1].
+float open_share() {
+    return texture(sampler2D(occlusion_map, map_sampler), in_uv).x;
+}
+#elif OCCLUSION == OCCLUSION_SCREEN
+float open_share() {
+    vec2 place = gl_FragCoord.xy / vec2(textureSize(sampler2D(seen_occlusion, open_sampler), 0));
+    return textureLod(sampler2D(seen_occlusion, open_sampler), place, 0.0).x;
+}
+#endif
+
 #if LIGHTMAP
 /// Light that was computed beforehand.
-vec3 baked() {
-    return texture(sampler2D(light_map, map_sampler), in_light_uv).rgb;
+vec3 baked(vec2 uv) {
+    return texture(sampler2D(light_map, map_sampler), uv).rgb;
 }
 #endif
 
-// Without lamps, ambient and baked light there is nothing to shade.
-#define SHADES (LIGHTS != LIGHTS_NONE || AMBIENT != AMBIENT_NONE || LIGHTMAP)
-
-#if !SHADES
-#elif LIGHTS == LIGHTS_NONE
-#include "forward/ambient.glsl"
-#if AMBIENT == AMBIENT_IBL
-#include "../ambient/ibl.glsl"
-#include "forward/viewer.glsl"
-#endif
-
+#if LIGHTS == LIGHTS_NONE && AMBIENT == AMBIENT_IBL
 /// The colour of the surface where no lamp shines.
 vec3 shade(vec3 base) {
-#if AMBIENT == AMBIENT_IBL
-    vec3 n = safe_normalize(in_normal, vec3(0.0));
-    vec3 mirrored = reflect(-towards_viewer(in_position), n);
-    vec3 diffuse = texture(samplerCube(sky_diffuse, sky_sampler), n).rgb;
+    vec3 normal = safe_normalize(in_normal, vec3(0.0));
+    vec3 mirrored = reflect(-towards_viewer(in_position), normal);
+    vec3 diffuse = texture(samplerCube(sky_diffuse, sky_sampler), normal).rgb;
     vec3 specular = texture(samplerCube(sky_specular, sky_sampler), mirrored).rgb;
     return ibl_mix(base, diffuse, specular, surroundings.diffuse_share, surroundings.specular_share);
-#elif AMBIENT != AMBIENT_NONE && LIGHTMAP
-    return base * (ambient_light(safe_normalize(in_normal, vec3(0.0))) + baked());
-#elif AMBIENT != AMBIENT_NONE
-    return base * ambient_light(safe_normalize(in_normal, vec3(0.0)));
+}
+#elif LIGHTS == LIGHTS_NONE && (AMBIENT != AMBIENT_NONE || LIGHTMAP)
+vec3 shade(vec3 base) {
+#if AMBIENT == AMBIENT_NONE
+    vec3 light = baked(in_light_uv);
+#elif LIGHTMAP
+    vec3 light = ambient_light(safe_normalize(in_normal, vec3(0.0))) + baked(in_light_uv);
 #else
-    return base * baked();
+    vec3 light = ambient_light(safe_normalize(in_normal, vec3(0.0)));
 #endif
+    return base * light;
 }
 #elif FREQUENCY == FREQUENCY_VERTEX
-#include "../lighting/classic.glsl"
-#include "forward/materials.glsl"
-
 /// The colour of the surface, from the light summed up at the vertices.
 vec3 shade(vec3 base) {
 #if MATERIAL == MATERIAL_ARRAY
@@ -171,52 +263,35 @@ vec3 shade(vec3 base) {
 #endif
     Accum sum = Accum(in_scattered, in_reflected);
 #if LIGHTMAP
-    sum.scattered += material.diffuse * baked();
+    sum.scattered += material.diffuse * baked(in_light_uv);
 #endif
     return resolve(base, material, sum);
 }
-#else
-#include "../surface/normal.glsl"
-#include "forward/lamps.glsl"
-#include "forward/environment.glsl"
-#if MATERIAL_MAPS
-#include "forward/maps.glsl"
-#endif
-
-#if OCCLUSION != OCCLUSION_NONE
-#include "../ambient/occlusion.glsl"
-
-/// The open share of the surroundings, [0, 1].
-float open_share() {
-#if OCCLUSION == OCCLUSION_MAP
-    return texture(sampler2D(occlusion_map, map_sampler), in_uv).x;
-#else
-    vec2 place = gl_FragCoord.xy / vec2(textureSize(sampler2D(seen_occlusion, open_sampler), 0));
-    return textureLod(sampler2D(seen_occlusion, open_sampler), place, 0.0).x;
-#endif
-}
-#endif
-
+#elif LIGHTS != LIGHTS_NONE
 /// The colour of the surface.
-vec3 shade(vec3 base) {
-    Surface surface;
+vec3 shade(
+    vec3 base
+#if TWO_SIDED
+    , bool front
+#endif
+) {
+    Surface surface = zero_surface();
     surface.position = in_position;
     surface.normal = safe_normalize(in_normal, vec3(0.0));
 #if TWO_SIDED
-    surface.normal = flip_if_back(surface.normal, gl_FrontFacing);
+    surface.normal = flip_if_back(surface.normal, front);
 #endif
 #if CLEARCOAT
     vec3 coat_normal = surface.normal;
 #endif
 #if NORMAL_MAP
-    vec3 texel = texture(sampler2D(normal_map, map_sampler), in_uv).xyz;
-    surface.normal = perturb_normal(surface.normal, in_tangent, texel);
+    surface.normal = perturb_normal(surface.normal, in_tangent, texture(sampler2D(normal_map, map_sampler), in_uv).xyz);
 #endif
-#if NEEDS_VIEW
+#if SPECULAR != SPECULAR_NONE || DIFFUSE == DIFFUSE_OREN_NAYAR || AMBIENT == AMBIENT_IBL
     surface.view = towards_viewer(in_position);
 #endif
 #if MATERIAL == MATERIAL_ARRAY && TWO_SIDED
-    surface.material = materials.items[material_index(int(in_material), gl_FrontFacing)];
+    surface.material = materials.items[material_index(int(in_material), front)];
 #elif MATERIAL == MATERIAL_ARRAY
     surface.material = materials.items[in_material];
 #else
@@ -226,7 +301,7 @@ vec3 shade(vec3 base) {
     Factors own = plain_factors();
 #endif
 #if MATERIAL_MAPS
-    own = mapped_factors(own);
+    own = mapped_factors(own, in_uv);
     vec4 rough_metal = texture(sampler2D(metallic_roughness_map, map_sampler), in_uv);
     own.metallic *= rough_metal.z;
     surface.material.roughness *= rough_metal.y;
@@ -234,11 +309,11 @@ vec3 shade(vec3 base) {
 #endif
 #if OCCLUSION != OCCLUSION_NONE
     float open = open_share();
-#if METALLIC_ROUGHNESS
-    surface.material.ambient *= multibounce(open, base);
-#else
-    surface.material.ambient *= multibounce(open, base * surface.material.diffuse);
 #endif
+#if OCCLUSION != OCCLUSION_NONE && METALLIC_ROUGHNESS
+    surface.material.ambient *= multibounce(open, base);
+#elif OCCLUSION != OCCLUSION_NONE
+    surface.material.ambient *= multibounce(open, base * surface.material.diffuse);
 #endif
 #if CASCADES
     surface.visibility = cascaded_visibility(surface, gl_FragCoord.xy);
@@ -265,48 +340,49 @@ vec3 shade(vec3 base) {
 #endif
     Accum sum = lit(surface);
 #if LIGHTMAP && METALLIC_ROUGHNESS
-    sum.scattered += baked();
+    sum.scattered += baked(in_light_uv);
 #elif LIGHTMAP
-    sum.scattered += surface.material.diffuse * baked();
+    sum.scattered += surface.material.diffuse * baked(in_light_uv);
 #endif
-#if METALLIC_ROUGHNESS
-    Around around = light_around(surface, sum.scattered);
-#if OCCLUSION != OCCLUSION_NONE && AMBIENT == AMBIENT_IBL
-    around = occluded(around, surface.layered, open);
-#endif
-    return layered_ambient(surface.layered, around, surface.material.emission) + sum.reflected;
-#else
-#if OCCLUSION != OCCLUSION_NONE && AMBIENT == AMBIENT_IBL
+#if OCCLUSION != OCCLUSION_NONE && AMBIENT == AMBIENT_IBL && !METALLIC_ROUGHNESS
     // The highlights of lamps are summed up, so only the mirrored environment loses by occlusion.
-    float nv = dot(surface.normal, surface.view);
-    surface.material.specular *= specular_occlusion(nv, open, highlight_alpha(surface.material));
+    surface.material.specular *= specular_occlusion(dot(surface.normal, surface.view), open, highlight_alpha(surface.material));
 #endif
-#if AMBIENT == AMBIENT_IBL
+#if AMBIENT == AMBIENT_IBL && !METALLIC_ROUGHNESS
     sum = add_environment(sum, surface);
 #endif
+#if METALLIC_ROUGHNESS && OCCLUSION != OCCLUSION_NONE && AMBIENT == AMBIENT_IBL
+    Around around = occluded(light_around(surface, sum.scattered), surface.layered, open);
+    return layered_ambient(surface.layered, around, surface.material.emission) + sum.reflected;
+#elif METALLIC_ROUGHNESS
+    return layered_ambient(surface.layered, light_around(surface, sum.scattered), surface.material.emission) + sum.reflected;
+#else
     return resolve(base, surface.material, sum);
 #endif
 }
 #endif
 
 void main() {
-    vec4 base = in_color;
 #if BASE_MAP
-    base *= texture(sampler2D(base_map, map_sampler), in_uv);
-#endif
-#if SHADES
-    vec3 shaded = shade(base.rgb);
+    vec4 base = in_color * texture(sampler2D(base_map, map_sampler), in_uv);
 #else
-    vec3 shaded = base.rgb;
+    vec4 base = in_color;
+#endif
+#if LIGHTS == LIGHTS_NONE && AMBIENT == AMBIENT_NONE && !LIGHTMAP
+    vec3 color = base.rgb;
+#elif TWO_SIDED
+    vec3 color = shade(base.rgb, gl_FrontFacing);
+#else
+    vec3 color = shade(base.rgb);
 #endif
 #if FOG != FOG_NONE
-    shaded = hazy(shaded, in_position);
+    color = hazy(color, in_position);
 #endif
 #if CURVE != CURVE_NONE
-    shaded = toned(shaded);
+    color = toned(color);
 #endif
 #if SATURATE
-    shaded = saturate_color(shaded);
+    color = saturate_color(color);
 #endif
-    out_color = vec4(shaded, base.a);
+    out_color = vec4(color, base.a);
 }

@@ -1,8 +1,13 @@
 #version 450
-//! The vertex stage of `forward`. Bindings and locations are tabulated in forward.wesl.
-// Stage variables have prefixes: naga lets the members of a block hide globals of their names.
+//! The vertex stage of `forward`, which `forward.wesl` describes.
+//!
+//! Made from `forward.wesl` by `cargo xtask docs`: edit that, not this file.
 
-#include "forward/camera.glsl"
+#if FREQUENCY == FREQUENCY_VERTEX
+#include "../lighting/classic.glsl"
+#include "../math/safe.glsl"
+#endif
+#include "forward.glsl"
 
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
@@ -53,10 +58,6 @@ layout(std140, set = 2, binding = 0) uniform Object {
     vec4 color;
 } object;
 
-#if FREQUENCY == FREQUENCY_VERTEX
-#include "forward/lamps.glsl"
-#endif
-
 void main() {
     vec4 position = object.world_from_object * vec4(in_position, 1.0);
     vec3 normal = (object.normal_from_object * vec4(in_normal, 0.0)).xyz;
@@ -79,10 +80,10 @@ void main() {
     out_material = in_material;
 #endif
 #if FREQUENCY == FREQUENCY_VERTEX
-    Surface surface;
+    Surface surface = zero_surface();
     surface.position = position.xyz;
     surface.normal = safe_normalize(normal, vec3(0.0));
-#if NEEDS_VIEW
+#if SPECULAR != SPECULAR_NONE || DIFFUSE == DIFFUSE_OREN_NAYAR
     surface.view = towards_viewer(position.xyz);
 #endif
 #if MATERIAL == MATERIAL_ARRAY

@@ -1,15 +1,19 @@
 #version 450
-//! The fragment stage of `gbuffer`. Bindings and locations are tabulated in gbuffer.wesl.
-// Stage variables have prefixes: naga lets the members of a block hide globals of their names.
+//! The fragment stage of `gbuffer`, which `gbuffer.wesl` describes.
+//!
+//! Made from `gbuffer.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #include "../ambient/octahedral.glsl"
+#if METALLIC_ROUGHNESS && !TWO_SIDED || TWO_SIDED
 #include "../lighting/material.glsl"
-#include "../math/safe.glsl"
-#if METALLIC_ROUGHNESS
-#include "forward/factors.glsl"
-#include "forward/materials.glsl"
 #endif
+#include "../math/safe.glsl"
+#if TWO_SIDED || NORMAL_MAP
 #include "../surface/normal.glsl"
+#endif
+#if METALLIC_ROUGHNESS
+#include "layers.glsl"
+#endif
 
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_color;
@@ -25,6 +29,17 @@ layout(location = 0) out vec4 out_color;
 layout(location = 1) out vec4 out_surface;
 #if METALLIC_ROUGHNESS
 layout(location = 2) out vec4 out_factors;
+#endif
+
+#if METALLIC_ROUGHNESS
+/// Materials in one array: pairs of front and back with `two_sided`.
+layout(std140, set = 1, binding = 0) uniform Materials {
+#if TWO_SIDED
+    Material items[28];
+#else
+    Material items[14];
+#endif
+} materials;
 #endif
 
 #if BASE_MAP
@@ -43,37 +58,45 @@ layout(set = 2, binding = 7) uniform texture2D metallic_roughness_map;
 #if METALLIC_ROUGHNESS
 /// The share of metal and the perceptual roughness, as `forward` has them.
 vec2 metal_and_roughness(uint material) {
-    float roughness = materials.items[min(material, uint(MATERIALS - 1))].roughness;
-#if METALLIC_ROUGHNESS_MAP
+#if TWO_SIDED
+    float roughness = materials.items[min(material, 27u)].roughness;
+#else
+    float roughness = materials.items[min(material, 13u)].roughness;
+#endif
+#if !METALLIC_ROUGHNESS_MAP
+    return vec2(layers.metallic, roughness);
+#else
     vec4 texel = texture(sampler2D(metallic_roughness_map, map_sampler), in_uv);
     return vec2(layers.metallic * texel.z, roughness * texel.y);
-#else
-    return vec2(layers.metallic, roughness);
 #endif
 }
 #endif
 
 void main() {
-    vec4 base = in_color;
 #if BASE_MAP
-    base *= texture(sampler2D(base_map, map_sampler), in_uv);
+    vec4 base = in_color * texture(sampler2D(base_map, map_sampler), in_uv);
+#else
+    vec4 base = in_color;
 #endif
     vec3 normal = safe_normalize(in_normal, vec3(0.0));
 #if TWO_SIDED
     normal = flip_if_back(normal, gl_FrontFacing);
 #endif
 #if NORMAL_MAP
-    vec3 texel = texture(sampler2D(normal_map, map_sampler), in_uv).xyz;
-    normal = perturb_normal(normal, in_tangent, texel);
+    normal = perturb_normal(normal, in_tangent, texture(sampler2D(normal_map, map_sampler), in_uv).xyz);
 #endif
 #if TWO_SIDED
     float material = float(material_index(int(in_material), gl_FrontFacing));
 #else
     float material = float(in_material);
 #endif
+#if !METALLIC_ROUGHNESS
     out_color = base;
     out_surface = vec4(0.5 + 0.5 * octahedral_encode(normal), material / 255.0, 1.0);
-#if METALLIC_ROUGHNESS
-    out_factors = vec4(metal_and_roughness(uint(material)), 0.0, 1.0);
+#else
+    vec4 surface = vec4(0.5 + 0.5 * octahedral_encode(normal), material / 255.0, 1.0);
+    out_color = base;
+    out_surface = surface;
+    out_factors = vec4(metal_and_roughness(uint(min(material, 4294967040.0))), 0.0, 1.0);
 #endif
 }

@@ -1,6 +1,7 @@
 #version 450
-//! The vertex stage of `gbuffer`. Bindings and locations are tabulated in gbuffer.wesl.
-// Stage variables have prefixes: naga lets the members of a block hide globals of their names.
+//! The vertex stage of `gbuffer`, which `gbuffer.wesl` describes.
+//!
+//! Made from `gbuffer.wesl` by `cargo xtask docs`: edit that, not this file.
 
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;

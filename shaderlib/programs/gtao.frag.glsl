@@ -1,19 +1,21 @@
 #version 450
-//! Ambient occlusion from the depth buffer, by horizons. Bindings are tabulated in gtao.wesl.
+//! The fragment stage of `gtao`, which `gtao.wesl` describes.
+//!
+//! Made from `gtao.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #include "../ambient/occlusion.glsl"
+#if NORMALS != NORMALS_DEPTH
 #include "../ambient/octahedral.glsl"
+#endif
 #include "../math/noise.glsl"
 #include "../math/safe.glsl"
 
 layout(location = 0) in vec2 in_uv;
+
 layout(location = 0) out vec4 out_color;
 
 layout(set = 0, binding = 0) uniform texture2D depth_buffer;
 layout(set = 0, binding = 1) uniform sampler depth_sampler;
-#if NORMALS == NORMALS_GBUFFER
-layout(set = 0, binding = 4) uniform texture2D surface_normal;
-#endif
 
 /// How places on the screen and in the view's space belong together.
 layout(std140, set = 0, binding = 2) uniform Screen {
@@ -33,17 +35,15 @@ layout(std140, set = 0, binding = 3) uniform Horizon {
     float falloff;
 } horizon;
 
+#if NORMALS == NORMALS_GBUFFER
+layout(set = 0, binding = 4) uniform texture2D surface_normal;
+#endif
+
 /// The point that the viewer sees at a place on the screen, in the view's space.
 vec3 seen_at(vec2 uv) {
     float depth = textureLod(sampler2D(depth_buffer, depth_sampler), uv, 0.0).x;
     vec4 place = screen.view_from_clip * vec4(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y, depth, 1.0);
     return place.xyz / place.w;
-}
-
-/// The middle of a texel, where the depth is that of the place.
-vec2 texel_centre(vec2 uv) {
-    vec2 size = vec2(textureSize(sampler2D(depth_buffer, depth_sampler), 0));
-    return (floor(uv * size) + 0.5) / size;
 }
 
 #if NORMALS == NORMALS_DEPTH
@@ -53,6 +53,12 @@ vec3 faced(vec3 across, vec3 p) {
     return dot(n, p) > 0.0 ? -n : n;
 }
 #endif
+
+/// The middle of a texel, where the depth is that of the place.
+vec2 texel_centre(vec2 uv) {
+    vec2 size = vec2(textureSize(sampler2D(depth_buffer, depth_sampler), 0));
+    return (floor(uv * size) + 0.5) / size;
+}
 
 /// The cosine between the view's direction and the horizon on one side.
 float highest(vec2 uv, vec3 p, vec3 v, vec2 side, float jitter) {
@@ -85,13 +91,15 @@ float slice_open(vec2 uv, vec3 p, vec3 n, vec3 v, vec2 direction, vec2 reach, fl
 
 void main() {
     vec3 p = seen_at(in_uv);
-#if NORMALS == NORMALS_DEPTH
-    vec3 n = faced(cross(dFdx(p), dFdy(p)), p);
-#else
+#if NORMALS == NORMALS_GBUFFER
     vec4 texel = textureLod(sampler2D(surface_normal, depth_sampler), in_uv, 0.0);
     if (texel.a < 0.5) {
         discard;
     }
+#endif
+#if NORMALS == NORMALS_DEPTH
+    vec3 n = faced(cross(dFdx(p), dFdy(p)), p);
+#else
     vec3 n = (screen.view_from_world * vec4(octahedral_decode(2.0 * texel.xy - 1.0), 0.0)).xyz;
 #endif
     vec3 v = safe_normalize(-p, vec3(0.0, 0.0, 1.0));

@@ -8,23 +8,85 @@
 //! Light is in the unit of `forward`: a lamp of colour 1 gives a white matt surface that faces it
 //! the colour 1, and so do surroundings of radiance 1. So a lobe is multiplied by pi. Highlights of
 //! rough facets are scaled up by what single scattering loses (`energy_compensation`).
+//!
+//! Made from `layers.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_PROGRAMS_LAYERS_GLSL
 #define LAMPLIGHT_PROGRAMS_LAYERS_GLSL
 
+#if CLEARCOAT
 #include "../brdf/coat.glsl"
+#endif
+#if DIFFUSE_TRANSMISSION
 #include "../brdf/diffuse.glsl"
+#endif
 #include "../brdf/energy.glsl"
+#if IRIDESCENCE
 #include "../brdf/film.glsl"
+#endif
+#if ANISOTROPY
 #include "../brdf/microfacet.glsl"
+#endif
+#if SHEEN
 #include "../brdf/sheen.glsl"
+#endif
 #include "../brdf/specular.glsl"
 #include "../brdf/transmission.glsl"
 #include "../math/safe.glsl"
 #if AREA == AREA_SPHERE || AREA == AREA_TUBE
 #include "areas.glsl"
 #endif
-#include "forward/factors.glsl"
+
+/// A material of glTF beside what `Material` has of it: its emission and its roughness. The
+/// comments name the factors of the extensions.
+layout(std140, set = 1, binding = 5) uniform Layers {
+    /// Linear: KHR_materials_specular, specularColorFactor.
+    vec3 specular_color;
+    /// [0, 1]: KHR_materials_specular, specularFactor.
+    float specular;
+    /// `sheen`: linear, KHR_materials_sheen, sheenColorFactor.
+    vec3 sheen_color;
+    /// `sheen`: perceptual, [0, 1].
+    float sheen_roughness;
+    /// `volume`: linear, [0, 1]: KHR_materials_volume, attenuationColor.
+    vec3 attenuation_color;
+    /// `volume`: scene units; 0 where the volume absorbs nothing.
+    float attenuation_distance;
+    /// `diffuse_transmission`: linear, diffuseTransmissionColorFactor.
+    vec3 diffuse_transmission_color;
+    /// `diffuse_transmission`: share of the scattered light that passes, [0, 1].
+    float diffuse_transmission;
+    /// `anisotropy`: cosine and sine of anisotropyRotation, from the tangent towards the bitangent.
+    vec2 anisotropy_direction;
+    /// `anisotropy`: anisotropyStrength, [0, 1].
+    float anisotropy;
+    /// metallicFactor, [0, 1].
+    float metallic;
+    /// Index of refraction: KHR_materials_ior; 1.5 where it is not given.
+    float ior;
+    /// Factor on the emission: KHR_materials_emissive_strength.
+    float emissive_strength;
+    /// `clearcoat`: clearcoatFactor, [0, 1].
+    float clearcoat;
+    /// `clearcoat`: perceptual, [0, 1].
+    float clearcoat_roughness;
+    /// `iridescence`: iridescenceFactor, [0, 1].
+    float iridescence;
+    /// `iridescence`: index of refraction of the film.
+    float iridescence_ior;
+    /// `iridescence`: thickness of the film, nanometres.
+    float iridescence_thickness;
+    /// `transmission`: transmissionFactor, [0, 1].
+    float transmission;
+    /// `volume`: thicknessFactor, scene units.
+    float thickness;
+    /// `dispersion`: 20 over the Abbe number.
+    float dispersion;
+    /// `ambient=ibl`: levels of `sky_specular`, even in perceptual roughness; 1 where it has one.
+    float sky_levels;
+    /// `iridescence`, `material_maps`: thickness of the film where green is 0, nanometres.
+    float iridescence_least;
+} layers;
 
 /// The factors of `Layers` that textures multiply, at a point.
 struct Factors {
@@ -44,6 +106,27 @@ struct Factors {
     float transmission;
     float thickness;
 };
+
+/// Zero in every member of `Factors`.
+Factors zero_factors() {
+    Factors zero;
+    zero.specular_color = vec3(0.0);
+    zero.specular = 0.0;
+    zero.sheen_color = vec3(0.0);
+    zero.sheen_roughness = 0.0;
+    zero.diffuse_transmission_color = vec3(0.0);
+    zero.diffuse_transmission = 0.0;
+    zero.anisotropy_direction = vec2(0.0);
+    zero.anisotropy = 0.0;
+    zero.metallic = 0.0;
+    zero.clearcoat = 0.0;
+    zero.clearcoat_roughness = 0.0;
+    zero.iridescence = 0.0;
+    zero.iridescence_thickness = 0.0;
+    zero.transmission = 0.0;
+    zero.thickness = 0.0;
+    return zero;
+}
 
 /// A point of a layered surface, as far as it does not depend on lights. Every permutation has all
 /// members, so that functions are the same in all of them; without an extension, its members are
@@ -77,6 +160,28 @@ struct Layered {
     vec3 passing;
 };
 
+/// Zero in every member of `Layered`.
+Layered zero_layered() {
+    Layered zero;
+    zero.normal = vec3(0.0);
+    zero.view = vec3(0.0);
+    zero.nv = 0.0;
+    zero.base = vec3(0.0);
+    zero.roughness = 0.0;
+    zero.own = zero_factors();
+    zero.f0 = vec3(0.0);
+    zero.dfg = vec2(0.0);
+    zero.tangent = vec3(0.0);
+    zero.bitangent = vec3(0.0);
+    zero.alphas = vec2(0.0);
+    zero.coat_normal = vec3(0.0);
+    zero.coat_share = 0.0;
+    zero.coat_gain = 0.0;
+    zero.sheen_view = 0.0;
+    zero.passing = vec3(0.0);
+    return zero;
+}
+
 /// The light around a layered surface: irradiance over pi, or radiance blurred by the roughness.
 struct Around {
     /// Onto the viewer's side.
@@ -93,7 +198,7 @@ struct Around {
 
 /// The factors where no texture multiplies them.
 Factors plain_factors() {
-    Factors own;
+    Factors own = zero_factors();
     own.specular_color = layers.specular_color;
     own.specular = layers.specular;
     own.metallic = layers.metallic;
@@ -128,7 +233,7 @@ Factors plain_factors() {
 
 /// The surface at a point.
 Layered layered(vec3 base, float roughness, vec3 normal, vec3 view, Factors own) {
-    Layered at;
+    Layered at = zero_layered();
     at.own = own;
     at.normal = normal;
     at.view = view;
@@ -176,21 +281,21 @@ Layered coated(Layered surface, vec3 coat_normal) {
 /// Reflectance at the cosine `mu`, of a material that has `f0` at normal incidence.
 vec3 reflectance(Layered at, vec3 f0, float mu) {
     vec3 plain = f_schlick(f0, 1.0, mu);
-#if IRIDESCENCE
+#if !IRIDESCENCE
+    return plain;
+#else
     vec3 film = iridescence(1.0, layers.iridescence_ior, f0, at.own.iridescence_thickness, mu);
     return mix(plain, film, at.own.iridescence);
-#else
-    return plain;
 #endif
 }
 
 /// The reflectance that the base's albedo is computed with: that of the film is towards the viewer.
 vec3 mean_reflectance(Layered at, vec3 f0) {
-#if IRIDESCENCE
+#if !IRIDESCENCE
+    return f0;
+#else
     vec3 film = iridescence(1.0, layers.iridescence_ior, f0, at.own.iridescence_thickness, at.nv);
     return mix(f0, film, at.own.iridescence);
-#else
-    return f0;
 #endif
 }
 
@@ -222,17 +327,6 @@ float brushed_facets(Layered at, vec3 l, vec3 h) {
 }
 #endif
 
-#if TRANSMISSION
-/// How rough the surface is for what is seen through it.
-float through_roughness(Layered at) {
-#if VOLUME
-    return transmission_roughness(at.roughness, layers.ior);
-#else
-    return at.roughness;
-#endif
-}
-#endif
-
 #if TRANSMISSION || DIFFUSE_TRANSMISSION
 /// How much of the light in the body reaches its other side.
 vec3 passing_share(Layered at) {
@@ -244,22 +338,34 @@ vec3 passing_share(Layered at) {
 }
 #endif
 
+#if TRANSMISSION
+/// How rough the surface is for what is seen through it.
+float through_roughness(Layered at) {
+#if VOLUME
+    return transmission_roughness(at.roughness, layers.ior);
+#else
+    return at.roughness;
+#endif
+}
+#endif
+
 /// What a dielectric does with the light of a lamp that it does not reflect.
 vec3 below_light(Layered at, vec3 l) {
     float nl = dot(at.normal, l);
+#if !DIFFUSE_TRANSMISSION
+    vec3 scattered = at.base * max(nl, 0.0);
+#endif
 #if DIFFUSE_TRANSMISSION
     float before = diffuse_transmission(max(nl, 0.0), at.own.diffuse_transmission);
     float behind = diffuse_transmission(min(nl, 0.0), at.own.diffuse_transmission);
     vec3 scattered = 3.14159265 * (at.base * before + at.own.diffuse_transmission_color * passing_share(at) * behind);
-#else
-    vec3 scattered = at.base * max(nl, 0.0);
 #endif
-#if TRANSMISSION
+#if !TRANSMISSION
+    return scattered;
+#else
     float roughness = through_roughness(at);
     float lobe = 3.14159265 * max(-nl, 0.0) * btdf_thin(at.normal, l, at.view, roughness * roughness);
     return mix(scattered, at.base * passing_share(at) * lobe, at.own.transmission);
-#else
-    return scattered;
 #endif
 }
 
@@ -294,12 +400,13 @@ vec3 layered_light(Layered at, vec3 l, float strength) {
 #if SHEEN
     light = sheen_over(at, light, l, h, strength);
 #endif
-#if CLEARCOAT
+#if !CLEARCOAT
+    return light;
+#else
     vec3 half_way = safe_normalize(l + at.view, at.coat_normal);
     float coat = strength * at.coat_gain * facets(at.coat_normal, at.view, l, half_way, at.own.clearcoat_roughness);
-    light = coat_mix(light, vec3(coat), 1.0, at.coat_share);
+    return coat_mix(light, vec3(coat), 1.0, at.coat_share);
 #endif
-    return light;
 }
 
 #if AREA == AREA_SPHERE || AREA == AREA_TUBE
@@ -317,12 +424,13 @@ vec3 layered_area_light(Layered at, float fallen, Seen base, Seen coat, float st
 #if SHEEN
     light = sheen_over(at, light, base.l, h, strength);
 #endif
-#if CLEARCOAT
+#if !CLEARCOAT
+    return light;
+#else
     vec3 half_way = safe_normalize(coat.l + at.view, at.coat_normal);
     float lobe_of_coat = facets(at.coat_normal, at.view, coat.l, half_way, at.own.clearcoat_roughness);
-    light = coat_mix(light, vec3(strength * coat.gain * at.coat_gain * lobe_of_coat), 1.0, at.coat_share);
+    return coat_mix(light, vec3(strength * coat.gain * at.coat_gain * lobe_of_coat), 1.0, at.coat_share);
 #endif
-    return light;
 }
 #endif
 
@@ -348,9 +456,10 @@ vec3 layered_ambient(Layered at, Around around, vec3 emission) {
 #endif
     light += emission * layers.emissive_strength;
 #if CLEARCOAT
-    light = coat_mix(light, around.coated, 1.0, at.coat_share);
-#endif
+    return coat_mix(light, around.coated, 1.0, at.coat_share);
+#else
     return light;
+#endif
 }
 
 /// The direction that the base mirrors towards the viewer.
@@ -366,18 +475,18 @@ vec3 mirrored_direction(Layered at) {
 /// The directions that are seen through the surface in red, green and blue: columns of a matrix. A
 /// thin surface does not bend light.
 mat3 through_directions(Layered at) {
-#if VOLUME && DISPERSION
+#if !VOLUME
+    return mat3(-at.view, -at.view, -at.view);
+#elif DISPERSION
     vec3 indices = dispersion_ior(layers.ior, layers.dispersion);
     return mat3(
         refract_exit(at.view, at.normal, indices.x, 1.0),
         refract_exit(at.view, at.normal, indices.y, 1.0),
         refract_exit(at.view, at.normal, indices.z, 1.0)
     );
-#elif VOLUME
+#else
     vec3 bent = refract_exit(at.view, at.normal, layers.ior, 1.0);
     return mat3(bent, bent, bent);
-#else
-    return mat3(-at.view, -at.view, -at.view);
 #endif
 }
 #endif

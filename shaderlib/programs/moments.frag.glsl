@@ -1,8 +1,12 @@
 #version 450
-//! Moments of the depth, as a light sees it: the fragment stage. Bindings are tabulated in moments.wesl.
+//! The fragment stage of `moments`, which `moments.wesl` describes.
+//!
+//! Made from `moments.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #include "../shadow/bias.glsl"
 #include "../shadow/moments.glsl"
+
+layout(location = 0) out vec4 out_color;
 
 /// How moments are made of a depth.
 layout(std140, set = 0, binding = 1) uniform Moments {
@@ -11,8 +15,6 @@ layout(std140, set = 0, binding = 1) uniform Moments {
     /// Added to the depth.
     float bias;
 } terms;
-
-layout(location = 0) out vec4 out_color;
 
 void main() {
     float depth = constant_bias(gl_FragCoord.z, -terms.bias);

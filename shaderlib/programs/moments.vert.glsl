@@ -1,5 +1,7 @@
 #version 450
-//! Moments of the depth, as a light sees it: the vertex stage. Bindings are tabulated in moments.wesl.
+//! The vertex stage of `moments`, which `moments.wesl` describes.
+//!
+//! Made from `moments.wesl` by `cargo xtask docs`: edit that, not this file.
 
 layout(location = 0) in vec3 in_position;
 

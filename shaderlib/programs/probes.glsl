@@ -4,14 +4,19 @@
 //! The squares of the probes are in rows of their height: the probe x, y, z is in column `x +
 //! counts.x*z` of row y. A square is the octahedron of `ambient::octahedral`, with a border of one
 //! texel that repeats what is across its edges.
+//!
+//! Made from `probes.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_PROGRAMS_PROBES_GLSL
 #define LAMPLIGHT_PROGRAMS_PROBES_GLSL
 
+#if AMBIENT == AMBIENT_DDGI
 #include "../ambient/ddgi.glsl"
 #include "../ambient/octahedral.glsl"
 #include "../math/safe.glsl"
+#endif
 
+#if AMBIENT == AMBIENT_DDGI
 /// The grid, along the axes of the world.
 layout(std140, set = 2, binding = 11) uniform Probes {
     /// Where the first probe is.
@@ -66,5 +71,6 @@ vec3 probe_irradiance(vec3 position, vec3 normal) {
     }
     return sum / total;
 }
+#endif
 
 #endif

@@ -1,12 +1,19 @@
 #version 450
-//! What a display shows of linear light. Bindings are tabulated in tonemap.wesl.
+//! The fragment stage of `tonemap`, which `tonemap.wesl` describes.
+//!
+//! Made from `tonemap.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #include "../color/tonemap.glsl"
 #include "../color/transfer.glsl"
+#if EXPOSURE == EXPOSURE_EV100
 #include "../lighting/units.glsl"
+#endif
+#if DITHER
 #include "../math/noise.glsl"
+#endif
 
 layout(location = 0) in vec2 in_uv;
+
 layout(location = 0) out vec4 out_color;
 
 layout(set = 0, binding = 0) uniform texture2D light;
@@ -34,18 +41,20 @@ layout(std140, set = 0, binding = 2) uniform Display {
 
 /// The light as the camera records it.
 vec3 exposed(vec3 color) {
-#if EXPOSURE == EXPOSURE_FACTOR
+#if EXPOSURE == EXPOSURE_NONE
+    return color;
+#elif EXPOSURE == EXPOSURE_FACTOR
     return color * display.factor;
 #elif EXPOSURE == EXPOSURE_EV100
     return color * exposure(display.ev100);
-#else
-    return color;
 #endif
 }
 
 /// What the display should show: linear, [0, 1] for every curve.
 vec3 toned(vec3 color) {
-#if CURVE == CURVE_REINHARD
+#if CURVE == CURVE_NONE
+    return color;
+#elif CURVE == CURVE_REINHARD
     return tonemap_reinhard(color);
 #elif CURVE == CURVE_REINHARD_EXTENDED
     return reinhard_extended(color, display.white);
@@ -65,22 +74,20 @@ vec3 toned(vec3 color) {
     return neutral(color);
 #elif CURVE == CURVE_UCHIMURA
     return uchimura(color);
-#else
-    return color;
 #endif
 }
 
 /// The colour as the display wants it.
 vec3 coded(vec3 color) {
-#if TRANSFER == TRANSFER_SRGB
+#if TRANSFER == TRANSFER_LINEAR
+    return color;
+#elif TRANSFER == TRANSFER_SRGB
     return srgb_from_linear(color);
 #elif TRANSFER == TRANSFER_PQ
     vec3 nits = color * display.nits;
     return vec3(pq_from_nits(nits.x), pq_from_nits(nits.y), pq_from_nits(nits.z));
 #elif TRANSFER == TRANSFER_HLG
     return vec3(hlg_from_linear(color.x), hlg_from_linear(color.y), hlg_from_linear(color.z));
-#else
-    return color;
 #endif
 }
 
@@ -88,7 +95,8 @@ void main() {
     vec4 texel = textureLod(sampler2D(light, light_sampler), in_uv, 0.0);
     vec3 color = coded(toned(exposed(texel.rgb)));
 #if DITHER
-    color = dither(color, ign_time(gl_FragCoord.xy, display.frame), display.steps);
-#endif
+    out_color = vec4(dither(color, ign_time(gl_FragCoord.xy, display.frame), display.steps), texel.a);
+#else
     out_color = vec4(color, texel.a);
+#endif
 }

@@ -1,4 +1,6 @@
 //! Against shadow acne: how far to move the compared depth towards the light, or the point out of the surface.
+//!
+//! Made from `bias.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_SHADOW_BIAS_GLSL
 #define LAMPLIGHT_SHADOW_BIAS_GLSL

@@ -1,4 +1,6 @@
 //! Which of up to four cascaded shadow maps covers a point.
+//!
+//! Made from `cascade.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_SHADOW_CASCADE_GLSL
 #define LAMPLIGHT_SHADOW_CASCADE_GLSL

@@ -2,6 +2,8 @@
 //!
 //! The sampler compares `reference <= stored` (or its opposite for reversed depth) and filters linearly, clamped to
 //! the edge. Kernels are in texels. Subtract a bias from `at.depth` first: see `shadow::bias`.
+//!
+//! Made from `compare.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_SHADOW_COMPARE_GLSL
 #define LAMPLIGHT_SHADOW_COMPARE_GLSL

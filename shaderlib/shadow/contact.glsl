@@ -1,4 +1,6 @@
 //! Shadows of small things by a march through the depth buffer.
+//!
+//! Made from `contact.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_SHADOW_CONTACT_GLSL
 #define LAMPLIGHT_SHADOW_CONTACT_GLSL

@@ -1,4 +1,6 @@
 //! From a point to its place in a shadow map. Conventions of clip space and texture space are handled here and nowhere else.
+//!
+//! Made from `coord.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_SHADOW_COORD_GLSL
 #define LAMPLIGHT_SHADOW_COORD_GLSL

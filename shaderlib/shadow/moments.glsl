@@ -1,4 +1,6 @@
 //! Visibility from filtered moments of the depth: variance shadow maps, plain and exponential.
+//!
+//! Made from `moments.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_SHADOW_MOMENTS_GLSL
 #define LAMPLIGHT_SHADOW_MOMENTS_GLSL
@@ -176,7 +178,7 @@ float msm_visibility(vec4 m, float t, float bias) {
     vec4 b = mix(m, vec4(0.5), bias);
     float variance = b.y - b.x * b.x;
     if (!(variance > 1e-12)) {
-        return (t <= b.x ? 1.0 : 0.0);
+        return t <= b.x ? 1.0 : 0.0;
     }
     float skew = b.z - b.x * b.y;
     float slope = skew / variance;
@@ -199,8 +201,8 @@ float msm_visibility(vec4 m, float t, float bias) {
     }
     // Before the point is the lower depth, or both: all that is not beyond the point or at it.
     bool beyond = high >= t;
-    float first = (beyond ? t : low);
-    float other = (beyond ? low : t);
+    float first = beyond ? t : low;
+    float other = beyond ? low : t;
     float below = (high - other) * (t - low);
     float share = (first * high - b.x * (first + high) + b.y) / (abs(below) < 1e-30 ? 1e-30 : below);
     return clamp(1.0 - (beyond ? share : 1.0 + share), 0.0, 1.0);

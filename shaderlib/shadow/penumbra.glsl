@@ -1,4 +1,6 @@
 //! The width of a penumbra, the soft edge of a shadow.
+//!
+//! Made from `penumbra.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_SHADOW_PENUMBRA_GLSL
 #define LAMPLIGHT_SHADOW_PENUMBRA_GLSL

@@ -1,4 +1,6 @@
 //! Soft shadows from a distance field: how near a ray to the light passes to anything.
+//!
+//! Made from `sdf.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_SHADOW_SDF_GLSL
 #define LAMPLIGHT_SHADOW_SDF_GLSL

@@ -1,4 +1,6 @@
 //! Normals: of triangles, from textures, and of the visible side.
+//!
+//! Made from `normal.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_SURFACE_NORMAL_GLSL
 #define LAMPLIGHT_SURFACE_NORMAL_GLSL

@@ -1,4 +1,6 @@
 //! The direction to the viewer, in eye space.
+//!
+//! Made from `view.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_SURFACE_VIEW_GLSL
 #define LAMPLIGHT_SURFACE_VIEW_GLSL

@@ -44,7 +44,7 @@ const COMMANDS: &[XtaskCommand] = &[
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
     (
         "conformance",
-        "what is accepted of other people's suites (gpuweb's CTS, folders of WGSL): [--verbose] DIR...",
+        "what is accepted of other people's suites: [--verbose] DIR..., or glsl [-I DIR]... DIR...",
         |arguments| make::run("conformance", arguments),
     ),
     ("validate", "let the validators of all targets check every output of a bundle", |arguments| {
@@ -75,11 +75,6 @@ const COMMANDS: &[XtaskCommand] = &[
         "fuzz",
         "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...; or `link`",
         |arguments| make::run("fuzz", arguments),
-    ),
-    (
-        "conformance",
-        "how much GLSL of other projects is translated to WGSL, beside glslang: [-I DIR]... DIR...",
-        |arguments| make::run("conformance", arguments),
     ),
     (
         "frames",

@@ -6,10 +6,10 @@
 //! after them. The first time defines the names, the second time takes them back. So the names of
 //! the host's own text are left alone.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::{CatalogueItemKind, outline};
-use lamplight_diagnostic::source::Files;
 
 /// Path below the library.
 pub const PATH: &str = "prefix.glsl";
@@ -26,9 +26,9 @@ const HEAD: &str = "\
 //! Made from the modules by `cargo xtask docs`: edit those, not this file.
 ";
 
-/// The file, from the modules of a package that has the library's layout.
-pub fn prefix_file(files: &dyn Files) -> String {
-    let names = prefixed_names(files);
+/// The file, from the texts of a library's GLSL modules by their paths.
+pub fn prefix_file(modules: &BTreeMap<String, String>) -> String {
+    let names = prefixed_names(modules);
     let mut text = format!("{HEAD}\n#ifndef LAMPLIGHT_PREFIXED\n#define LAMPLIGHT_PREFIXED\n\n");
     for PrefixName { name, parameters } in &names {
         let _ = writeln!(text, "#define {name}{parameters} {PREFIX}{name}{parameters}");
@@ -49,12 +49,10 @@ struct PrefixName {
 }
 
 /// All names, sorted.
-fn prefixed_names(files: &dyn Files) -> Vec<PrefixName> {
-    let is_module = |path: &String| !path.starts_with(super::PROGRAMS) && path != PATH;
-    let texts = files.list(&["glsl"]).into_iter().filter(is_module);
-    let texts = texts.filter_map(|path| files.read(&path).ok().flatten());
+fn prefixed_names(modules: &BTreeMap<String, String>) -> Vec<PrefixName> {
+    let texts = modules.iter().filter(|(path, _)| !path.starts_with(super::PROGRAMS));
     let mut names: Vec<PrefixName> =
-        texts.flat_map(|text| outline::glsl_declarations(&text)).map(name_of).collect();
+        texts.flat_map(|(_, text)| outline::glsl_declarations(text)).map(name_of).collect();
     names.sort_by(|a, b| a.name.cmp(&b.name));
     names
 }

@@ -74,16 +74,13 @@ fn make_probe(name: String, entry: &ProbeEntry) -> Option<Probe> {
     })
 }
 
-/// First lines of both modules.
+/// First lines of the module.
 const HEAD: &str = "\
 //! Published light probes: radiance around ten places as nine spherical harmonics, for
 //! `ambient::sh`.
 //!
 //! Made from `data/sh9_probes.toml` by `cargo xtask docs`: edit that file, not this one.
 ";
-
-/// What a module in GLSL has before its declarations and after them.
-const PREFIXED: &str = "#ifdef LAMPLIGHT_PREFIX\n#include \"../prefix.glsl\"\n#endif\n";
 
 /// The module `ambient::probes` in WESL.
 pub fn wesl_module(probes: &[Probe]) -> String {
@@ -100,30 +97,6 @@ pub fn wesl_module(probes: &[Probe]) -> String {
         }
         text.push_str("    );\n}\n");
     }
-    text
-}
-
-/// The same in GLSL.
-pub fn glsl_module(probes: &[Probe]) -> String {
-    let mut text = format!(
-        "{HEAD}\n#ifndef LAMPLIGHT_AMBIENT_PROBES_GLSL\n#define LAMPLIGHT_AMBIENT_PROBES_GLSL\n\n{PREFIXED}"
-    );
-    for probe in probes {
-        let _ = write!(
-            text,
-            "\n{}vec3[9] probe_{}() {{\n    return vec3[9](\n",
-            probe_doc(probe),
-            probe.name
-        );
-        let rows: Vec<String> = probe
-            .coefficients
-            .iter()
-            .map(|row| format!("        vec3({})", joined_numbers(row)))
-            .collect();
-        text.push_str(&rows.join(",\n"));
-        text.push_str("\n    );\n}\n");
-    }
-    let _ = write!(text, "\n{PREFIXED}\n#endif\n");
     text
 }
 

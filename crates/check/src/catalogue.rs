@@ -7,6 +7,7 @@ use super::library::{Library, lock_sources};
 use super::{plots, quality};
 use lamplight_catalogue::pages::{CatalogueContents, DrawnPlot, catalogue_pages};
 use lamplight_catalogue::quality::{self as groups, Measured};
+use lamplight_catalogue::translated::translated_files;
 use lamplight_catalogue::{
     self as catalogue, CatalogueModule, cost, figure, plot, prefix, preset, probe, reader,
 };
@@ -30,20 +31,24 @@ pub fn catalogue_files(library: Embedded) -> Result<CatalogueFiles, (SourceSet, 
 }
 
 /// The files of the library that are generated, by path below the library: the module of the
-/// ambient probes with its cases, and the file of prefixed names.
+/// ambient probes with its cases, everything in GLSL, and the file of prefixed names.
 pub fn made_modules(library: Embedded) -> Result<CatalogueFiles, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let probes = match probe::library_probes(library, &mut sources) {
         Ok(probes) => probes,
         Err(problems) => return Err((sources, problems)),
     };
-    let made = [
-        ("ambient/probes.wesl", probe::wesl_module(&probes)),
-        ("ambient/probes.glsl", probe::glsl_module(&probes)),
-        ("ambient/probes.toml", probe::numeric_cases(&probes)),
-        (prefix::PATH, prefix::prefix_file(&library)),
-    ];
-    Ok(made.into_iter().map(|(path, text)| (path.to_owned(), text)).collect())
+    let mut made = CatalogueFiles::from([
+        ("ambient/probes.wesl".to_owned(), probe::wesl_module(&probes)),
+        ("ambient/probes.toml".to_owned(), probe::numeric_cases(&probes)),
+    ]);
+    let glsl = match translated_files(&library, &made, &mut sources) {
+        Ok(glsl) => glsl,
+        Err(problems) => return Err((sources, problems)),
+    };
+    made.insert(prefix::PATH.to_owned(), prefix::prefix_file(&glsl));
+    made.extend(glsl);
+    Ok(made)
 }
 
 fn read_contents(

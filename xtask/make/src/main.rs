@@ -17,7 +17,6 @@ use xtask::XtaskCommand;
 
 const COMMANDS: &[XtaskCommand] = &[
     ("gen", "write the library's bundle", generate::run),
-    ("conformance", "translate GLSL of other projects", conformance::run),
     ("fuzz", "hostile inputs for every parser", fuzz::run),
     ("new", "write the files for a new entry", create::run),
     ("conformance", "what is accepted of other people's suites", conformance::run),

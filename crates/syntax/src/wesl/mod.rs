@@ -10,15 +10,18 @@ mod item;
 mod module;
 mod token;
 
+pub use condition::{Attributes, Chain, read_attributes};
+pub use item::{ItemPlace, after_template, read_origin};
 pub use module::{
     ComparisonOperand, ComparisonOperator, Condition, ConditionId, Directive, Event, Expression,
     ExpressionId, Guard, Import, Item, ItemKind, LocalUse, Module, Origin, Path, PathParts,
     PlacedModule, UsedName,
 };
-pub use token::{Name, Names, is_keyword, is_path_name, keywords};
+pub use token::{Name, Names, Token, TokenKind, Tokens, is_keyword, is_path_name, keywords};
 
 use std::sync::Arc;
 
+use lamplight_diagnostic::Diagnostics;
 use lamplight_diagnostic::source::SourceId;
 
 /// The most errors of one file that are reported.
@@ -35,10 +38,35 @@ pub fn parse_for_editor(source: SourceId, text: Arc<str>, names: &mut Names) -> 
     parse_with(source, text, names, true)
 }
 
-fn parse_with(source: SourceId, text: Arc<str>, names: &mut Names, locals: bool) -> Module {
-    let mut module = Module {
+/// A file as tokens, for readers that go into the bodies of items.
+#[derive(Debug)]
+pub struct SplitModule {
+    /// Its imports, items and the conditions of both. Bodies are not read: there are no events.
+    pub module: Module,
+    pub tokens: Vec<Token>,
+    /// Where each item is among the tokens.
+    pub places: Vec<ItemPlace>,
+}
+
+/// Reads a file's imports and the heads of its items.
+pub fn split_module(
+    source: SourceId,
+    text: Arc<str>,
+    names: &mut Names,
+) -> Result<SplitModule, Diagnostics> {
+    let tokens = token::tokenize(&text, source, names).map_err(|error| vec![error])?;
+    let mut module = empty_module(source, text);
+    let places = item::split_items(&mut module, &tokens, names);
+    match module.errors.is_empty() {
+        true => Ok(SplitModule { module, tokens, places }),
+        false => Err(module.errors),
+    }
+}
+
+fn empty_module(source: SourceId, text: Arc<str>) -> Module {
+    Module {
         source,
-        text: Arc::clone(&text),
+        text,
         directives: Vec::new(),
         imports: Vec::new(),
         items: Vec::new(),
@@ -49,7 +77,11 @@ fn parse_with(source: SourceId, text: Arc<str>, names: &mut Names, locals: bool)
         local_uses: Vec::new(),
         errors: Vec::new(),
         warnings: Vec::new(),
-    };
+    }
+}
+
+fn parse_with(source: SourceId, text: Arc<str>, names: &mut Names, locals: bool) -> Module {
+    let mut module = empty_module(source, Arc::clone(&text));
     match token::tokenize(&text, source, names) {
         Ok(tokens) => {
             let found = item::split_items(&mut module, &tokens, names);

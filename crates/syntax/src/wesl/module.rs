@@ -34,6 +34,11 @@ impl Module {
     pub fn has_errors(&self) -> bool {
         !self.errors.is_empty()
     }
+
+    /// The errors that were found since this was last called.
+    pub fn take_errors(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.errors)
+    }
 }
 
 /// A parsed text together with the file that it is used for. Several files, or several readings of

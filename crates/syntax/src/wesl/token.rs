@@ -255,6 +255,10 @@ impl<'a> Tokens<'a> {
         self.tokens.len()
     }
 
+    pub fn is_empty(self) -> bool {
+        self.tokens.is_empty()
+    }
+
     pub fn kind(self, at: usize) -> Option<TokenKind> {
         self.tokens.get(at).map(|token| token.kind)
     }

@@ -1,0 +1,519 @@
+//! Expressions as GLSL.
+
+use std::collections::BTreeMap;
+
+use lamplight_diagnostic::Diagnostic;
+use lamplight_diagnostic::source::Span;
+
+use super::facts::{Facts, StageField};
+use super::range::{Counters, range_of};
+use super::words::{glsl_name, item_name, macro_name, type_name};
+use crate::tree::{Argument, Binary, Callee, Expression, ExpressionKind, LineBreak, Meaning};
+use crate::tree::{Number, NumberValue, Scalar, Type, Unary};
+use crate::types::{Folded, GlobalKind, Globals, fold};
+use crate::wesl::untranslated;
+
+/// How tightly things bind. Binary operators have the numbers of [`crate::tree::BINARY`].
+pub const CHOICE: u8 = 0;
+pub const UNARY: u8 = 15;
+pub const POSTFIX: u8 = 19;
+
+/// What writes the body of a function.
+pub struct Writer<'a> {
+    pub globals: &'a Globals,
+    pub facts: &'a Facts,
+    /// Whether pairs of a texture and a sampler are written with the library's macros.
+    pub has_macros: bool,
+    /// What the parameters and locals are, by where they are declared.
+    pub locals: BTreeMap<u32, LocalRole>,
+    pub counters: Counters,
+    /// The samplers that textures of the module are read with, by name.
+    pub samplers: &'a BTreeMap<String, String>,
+}
+
+/// What a parameter or a local has become.
+#[derive(Debug, Clone)]
+pub enum LocalRole {
+    Named(String),
+    /// An input of the stage, as it is written.
+    Input(String),
+    /// What a stage takes or returns: its members are variables of the stage.
+    Stage(Vec<StageField>),
+}
+
+/// A text, and how tightly its outermost operator binds.
+pub struct Bound(pub String, pub u8);
+
+impl Bound {
+    pub fn primary(text: impl Into<String>) -> Self {
+        Self(text.into(), 20)
+    }
+}
+
+/// The text of an expression, or why there is none.
+pub type Written = Result<Bound, Diagnostic>;
+
+impl Writer<'_> {
+    /// An expression that needs no parentheses around it.
+    pub fn whole(&self, value: &Expression, indent: usize) -> Result<String, Diagnostic> {
+        Ok(self.bound(value, indent)?.0)
+    }
+
+    /// An expression as an operand, in parentheses if it binds less tightly than `least`.
+    pub fn operand(
+        &self,
+        value: &Expression,
+        least: u8,
+        indent: usize,
+    ) -> Result<String, Diagnostic> {
+        let Bound(text, binds) = self.bound(value, indent)?;
+        Ok(if binds < least { format!("({text})") } else { text })
+    }
+
+    pub fn bound(&self, value: &Expression, indent: usize) -> Written {
+        match &value.kind {
+            ExpressionKind::Number(number) => Ok(number_text(number, &value.ty)),
+            ExpressionKind::Bool(value) => Ok(Bound::primary(value.to_string())),
+            ExpressionKind::Name(name, meaning) => self.name(name, meaning, value.span),
+            ExpressionKind::Axis(axis) => Ok(Bound::primary(macro_name(axis))),
+            ExpressionKind::Parenthesised(inner) if is_reference(inner) => {
+                self.bound(inner, indent)
+            }
+            ExpressionKind::Parenthesised(inner) => {
+                Ok(Bound::primary(format!("({})", self.whole(inner, indent)?)))
+            }
+            ExpressionKind::Convert(inner) => self.converted(inner, &value.ty),
+            ExpressionKind::Unary(operator, inner) => self.unary(*operator, inner, indent),
+            ExpressionKind::Binary { operator, left, right, line_break } => {
+                self.binary(*operator, left, right, *line_break, value, indent)
+            }
+            ExpressionKind::Member(object, member) => self.member(object, member, indent),
+            ExpressionKind::Index(object, index) => {
+                let object = self.operand(object, POSTFIX, indent)?;
+                Ok(Bound(format!("{object}[{}]", self.whole(index, indent)?), POSTFIX))
+            }
+            ExpressionKind::Call { callee, arguments, is_broken } => {
+                self.call(callee, arguments, *is_broken, value, indent)
+            }
+        }
+    }
+
+    fn name(&self, name: &str, meaning: &Meaning, span: Span) -> Written {
+        match meaning {
+            Meaning::Local(number) => match self.locals.get(number) {
+                Some(LocalRole::Named(name)) => Ok(Bound::primary(name)),
+                Some(LocalRole::Input(text)) => Ok(Bound(text.clone(), POSTFIX)),
+                Some(LocalRole::Stage(_)) => {
+                    Err(untranslated(span, "the whole of what a stage takes or returns"))
+                }
+                None => Ok(Bound::primary(glsl_name(name))),
+            },
+            Meaning::Item(path) => Ok(Bound::primary(item_name(path))),
+            Meaning::Unknown => Err(untranslated(span, format!("`{name}`"))),
+        }
+    }
+
+    /// The value of an axis, or of a constant that has no size, with another type.
+    fn converted(&self, inner: &Expression, ty: &Type) -> Written {
+        let Some(scalar) = ty.scalar() else {
+            return Err(untranslated(inner.span, format!("a conversion to {ty}")));
+        };
+        match &inner.kind {
+            ExpressionKind::Axis(axis) => {
+                let axis = macro_name(axis);
+                Ok(match scalar {
+                    Scalar::U32 => Bound(format!("uint({axis})"), POSTFIX),
+                    Scalar::F32 => Bound(format!("float({axis})"), POSTFIX),
+                    _ => Bound::primary(axis),
+                })
+            }
+            ExpressionKind::Name(_, Meaning::Item(path)) => {
+                let declared =
+                    self.globals.items(path).iter().find_map(|global| match &global.kind {
+                        GlobalKind::Constant { ty, .. } => ty.scalar(),
+                        _ => None,
+                    });
+                let is_same = matches!(
+                    (declared, scalar),
+                    (Some(Scalar::AbstractInteger), Scalar::I32)
+                        | (Some(Scalar::AbstractFloat), Scalar::F32)
+                );
+                if is_same {
+                    return Ok(Bound::primary(item_name(path)));
+                }
+                let refused = || untranslated(inner.span, "a constant without a size");
+                let value = match fold(inner, self.globals).ok_or_else(refused)? {
+                    Folded::Integer(value) => NumberValue::Integer(value),
+                    Folded::Float(value) => NumberValue::Float(value),
+                };
+                let text = match value {
+                    NumberValue::Integer(value) => value.to_string(),
+                    NumberValue::Float(value) => format!("{:?}", value as f32),
+                };
+                Ok(number_text(&Number { text, value }, ty))
+            }
+            _ => Err(untranslated(inner.span, "a constant without a size")),
+        }
+    }
+
+    fn unary(&self, operator: Unary, inner: &Expression, indent: usize) -> Written {
+        let sign = match operator {
+            Unary::Negate => "-",
+            Unary::Not if matches!(inner.ty, Type::Vector(..)) => {
+                let inner = self.whole(inner.bare(), indent)?;
+                return Ok(Bound(format!("not({inner})"), POSTFIX));
+            }
+            Unary::Not => "!",
+            Unary::Complement => "~",
+            Unary::Address | Unary::Follow => return self.bound(inner, indent),
+        };
+        let text = self.operand(inner, UNARY, indent)?;
+        Ok(match text.starts_with(sign) {
+            true => Bound(format!("{sign}({text})"), UNARY),
+            false => Bound(format!("{sign}{text}"), UNARY),
+        })
+    }
+
+    fn member(&self, object: &Expression, member: &str, indent: usize) -> Written {
+        if let ExpressionKind::Name(_, Meaning::Local(number)) = &object.bare().kind
+            && let Some(LocalRole::Stage(fields)) = self.locals.get(number)
+        {
+            return stage_member(fields, member, object.span);
+        }
+        let is_structure = matches!(followed(&object.ty), Type::Structure(_));
+        let object = self.operand(object, POSTFIX, indent)?;
+        let member = if is_structure { glsl_name(member) } else { member.to_owned() };
+        Ok(Bound(format!("{object}.{member}"), POSTFIX))
+    }
+
+    /// A call of a function or of a type.
+    fn call(
+        &self,
+        callee: &Callee,
+        arguments: &[Argument],
+        is_broken: bool,
+        value: &Expression,
+        indent: usize,
+    ) -> Written {
+        match callee {
+            Callee::Function(path) => {
+                let kept: Vec<&Argument> = arguments
+                    .iter()
+                    .filter(|argument| !self.facts.is_stage_type(&argument.value.ty))
+                    .collect();
+                self.check_stage_arguments(arguments)?;
+                let texts = self.paired_arguments(&kept, indent)?;
+                Ok(Bound(listed(&item_name(path), &texts, is_broken, indent), POSTFIX))
+            }
+            Callee::Construct(ty) => self.construct(ty, arguments, is_broken, value.span, indent),
+            Callee::Bitcast(target) => {
+                let [argument] = arguments else {
+                    return Err(untranslated(value.span, "this `bitcast`"));
+                };
+                self.bitcast(target, &argument.value, indent)
+            }
+            Callee::Builtin(name) => self.builtin(name, arguments, value, is_broken, indent),
+            Callee::Name(name) => Err(untranslated(value.span, format!("`{name}`"))),
+        }
+    }
+
+    /// What a stage takes is passed on as it is, or not at all.
+    fn check_stage_arguments(&self, arguments: &[Argument]) -> Result<(), Diagnostic> {
+        for argument in arguments {
+            let value = argument.value.bare();
+            if !self.facts.is_stage_type(&value.ty) {
+                continue;
+            }
+            let is_whole = match &value.kind {
+                ExpressionKind::Name(_, Meaning::Local(number)) => {
+                    matches!(self.locals.get(number), Some(LocalRole::Stage(_)))
+                }
+                _ => false,
+            };
+            if !is_whole {
+                return Err(untranslated(value.span, "a made value of what a stage takes"));
+            }
+        }
+        Ok(())
+    }
+
+    fn construct(
+        &self,
+        ty: &Type,
+        arguments: &[Argument],
+        is_broken: bool,
+        span: Span,
+        indent: usize,
+    ) -> Written {
+        if arguments.is_empty() {
+            return Ok(Bound(self.zero(ty, span)?, POSTFIX));
+        }
+        let name = type_name(ty, span)?;
+        if let ([argument], Type::Scalar(scalar)) = (arguments, ty) {
+            let text = self.scalar_conversion(*scalar, &argument.value, indent)?;
+            return Ok(Bound(text, POSTFIX));
+        }
+        if let ([argument], Some(Scalar::I32 | Scalar::U32), Some(Scalar::F32)) =
+            (arguments, ty.scalar(), arguments[0].value.ty.scalar())
+        {
+            let size = argument.value.ty.clone();
+            let text = self.in_range(&argument.value, ty, &size, indent)?;
+            return Ok(Bound(format!("{name}({text})"), POSTFIX));
+        }
+        let mut texts = Vec::new();
+        for argument in arguments {
+            let text = match self.signed_size(&argument.value, indent)? {
+                Some(size) if ty.scalar() == Some(Scalar::F32) => size,
+                _ => self.whole(&argument.value, indent + usize::from(is_broken))?,
+            };
+            texts.push((text, argument.is_on_new_line));
+        }
+        Ok(Bound(listed(&name, &texts, is_broken, indent), POSTFIX))
+    }
+
+    /// `int(x)` and its like. WGSL takes the nearest number of the type where GLSL leaves the result
+    /// open.
+    fn scalar_conversion(
+        &self,
+        scalar: Scalar,
+        value: &Expression,
+        indent: usize,
+    ) -> Result<String, Diagnostic> {
+        let name = type_name(&Type::Scalar(scalar), value.span)?;
+        let from = value.ty.scalar();
+        let text = match (scalar, from) {
+            (Scalar::I32 | Scalar::U32, Some(Scalar::F32)) => {
+                self.in_range(value, &Type::Scalar(scalar), &Type::F32, indent)?
+            }
+            _ => self.whole(value, indent)?,
+        };
+        Ok(format!("{name}({text})"))
+    }
+
+    /// A float within the range of an integer type.
+    fn in_range(
+        &self,
+        value: &Expression,
+        ty: &Type,
+        size: &Type,
+        indent: usize,
+    ) -> Result<String, Diagnostic> {
+        // The floats that are the first below these types, and the last in them.
+        let (least, most, low, high) = match ty.scalar() {
+            Some(Scalar::U32) => (-1.0, 4_294_967_040.0, "0.0", "4294967040.0"),
+            _ => (-2_147_483_904.0, 2_147_483_520.0, "-2147483648.0", "2147483520.0"),
+        };
+        let range = range_of(value, &self.counters);
+        let is_low = range.least <= least;
+        let is_high = range.most > most;
+        let text = self.whole(value, indent)?;
+        let wide = |number: &str| match size {
+            Type::Vector(count, _) => format!("vec{count}({number})"),
+            _ => number.to_owned(),
+        };
+        Ok(match (is_low, is_high) {
+            (true, true) => format!("clamp({text}, {}, {})", wide(low), wide(high)),
+            (true, false) => format!("max({text}, {})", wide(low)),
+            (false, true) => format!("min({text}, {})", wide(high)),
+            (false, false) => text,
+        })
+    }
+
+    fn bitcast(&self, target: &Type, value: &Expression, indent: usize) -> Written {
+        let text = self.whole(value, indent)?;
+        let name = match (target.scalar(), value.ty.scalar()) {
+            (Some(to), Some(from)) if to == from => return self.bound(value, indent),
+            (Some(Scalar::U32), Some(Scalar::F32)) => "floatBitsToUint".to_owned(),
+            (Some(Scalar::I32), Some(Scalar::F32)) => "floatBitsToInt".to_owned(),
+            (Some(Scalar::F32), Some(Scalar::U32)) => "uintBitsToFloat".to_owned(),
+            (Some(Scalar::F32), Some(Scalar::I32)) => "intBitsToFloat".to_owned(),
+            (Some(Scalar::I32 | Scalar::U32), Some(Scalar::I32 | Scalar::U32)) => {
+                type_name(target, value.span)?
+            }
+            _ => return Err(untranslated(value.span, "this `bitcast`")),
+        };
+        Ok(Bound(format!("{name}({text})"), POSTFIX))
+    }
+
+    /// The zero of a type.
+    pub fn zero(&self, ty: &Type, span: Span) -> Result<String, Diagnostic> {
+        Ok(match ty {
+            Type::Scalar(Scalar::Bool) => "false".to_owned(),
+            Type::Scalar(Scalar::I32) => "0".to_owned(),
+            Type::Scalar(Scalar::U32) => "0u".to_owned(),
+            Type::Scalar(_) => "0.0".to_owned(),
+            Type::Vector(_, scalar) => {
+                format!("{}({})", type_name(ty, span)?, self.zero(&Type::Scalar(*scalar), span)?)
+            }
+            Type::Matrix { .. } => format!("{}(0.0)", type_name(ty, span)?),
+            Type::Structure(path) if self.facts.needs_zero(path) => {
+                format!("{}()", self.facts.zero_function(path))
+            }
+            Type::Structure(path) => {
+                let members = self.globals.members(path).unwrap_or_default();
+                let zeros: Result<Vec<String>, Diagnostic> =
+                    members.iter().map(|member| self.zero(&member.ty, span)).collect();
+                format!("{}({})", item_name(path), zeros?.join(", "))
+            }
+            Type::Array(element, crate::tree::Count::Fixed(count)) if *count <= LONGEST_ZERO => {
+                let zero = self.zero(element, span)?;
+                let zeros = vec![zero; *count as usize].join(", ");
+                format!("{}({zeros})", type_name(ty, span)?)
+            }
+            other => return Err(untranslated(span, format!("the zero of {other}"))),
+        })
+    }
+
+    /// Arguments as texts, and whether each begins a line. A texture and the sampler behind it may
+    /// be one macro.
+    pub fn paired_arguments(
+        &self,
+        arguments: &[&Argument],
+        indent: usize,
+    ) -> Result<Vec<(String, bool)>, Diagnostic> {
+        let mut texts = Vec::new();
+        let mut at = 0;
+        let inner = indent + 1;
+        while let Some(argument) = arguments.get(at) {
+            let next = arguments.get(at + 1);
+            if let Some(pair) = next.and_then(|next| self.pair_argument(argument, next)) {
+                texts.push((pair, argument.is_on_new_line));
+                at += 2;
+                continue;
+            }
+            texts.push((self.whole(&argument.value, inner)?, argument.is_on_new_line));
+            at += 1;
+        }
+        Ok(texts)
+    }
+
+    /// Whether something may be written twice: it has no effects, and costs nothing.
+    pub fn is_cheap(&self, value: &Expression) -> bool {
+        match &value.kind {
+            ExpressionKind::Number(_)
+            | ExpressionKind::Bool(_)
+            | ExpressionKind::Axis(_)
+            | ExpressionKind::Name(..) => true,
+            ExpressionKind::Parenthesised(inner)
+            | ExpressionKind::Unary(_, inner)
+            | ExpressionKind::Member(inner, _)
+            | ExpressionKind::Convert(inner) => self.is_cheap(inner),
+            ExpressionKind::Index(object, index) => self.is_cheap(object) && self.is_cheap(index),
+            ExpressionKind::Binary { left, right, .. } => {
+                self.is_cheap(left) && self.is_cheap(right)
+            }
+            ExpressionKind::Call { callee: Callee::Construct(_), arguments, .. } => {
+                arguments.iter().all(|argument| self.is_cheap(&argument.value))
+            }
+            ExpressionKind::Call { .. } => false,
+        }
+    }
+
+    fn binary(
+        &self,
+        operator: Binary,
+        left: &Expression,
+        right: &Expression,
+        line_break: LineBreak,
+        value: &Expression,
+        indent: usize,
+    ) -> Written {
+        if let Some(special) = self.special_binary(operator, left, right, indent)? {
+            return Ok(special);
+        }
+        let is_truth = left.ty.scalar() == Some(Scalar::Bool);
+        let operator = match operator {
+            Binary::BitAnd if is_truth => Binary::And,
+            Binary::BitOr if is_truth => Binary::Or,
+            other => other,
+        };
+        let _ = value;
+        let (sign, binds) = operator.spelling();
+        let inner = indent + usize::from(line_break != LineBreak::None);
+        let left = self.operand(left, binds, indent)?;
+        let right = self.operand(right, binds + 1, inner)?;
+        let line = format!("\n{}", "    ".repeat(inner));
+        Ok(match line_break {
+            LineBreak::None => Bound(format!("{left} {sign} {right}"), binds),
+            LineBreak::Before => Bound(format!("{left}{line}{sign} {right}"), binds),
+            LineBreak::After => Bound(format!("{left} {sign}{line}{right}"), binds),
+        })
+    }
+}
+
+/// Whether an expression is a pointer that is followed or made, which GLSL does not write.
+fn is_reference(value: &Expression) -> bool {
+    match &value.kind {
+        ExpressionKind::Unary(Unary::Address | Unary::Follow, _) => true,
+        ExpressionKind::Parenthesised(inner) => is_reference(inner),
+        _ => false,
+    }
+}
+
+/// The longest array whose zero is written as a list.
+const LONGEST_ZERO: u32 = 64;
+
+/// The type that a pointer leads to, or the type itself.
+pub fn followed(ty: &Type) -> &Type {
+    match ty {
+        Type::Pointer(_, target) => target,
+        other => other,
+    }
+}
+
+fn stage_member(fields: &[StageField], member: &str, span: Span) -> Written {
+    let mut found = fields.iter().filter(|field| field.name == member);
+    let field = found.next().ok_or_else(|| untranslated(span, format!("`{member}`")))?;
+    Ok(Bound(field.variable.clone(), POSTFIX))
+}
+
+/// A call with its arguments, on lines of their own where they were.
+pub fn listed(name: &str, arguments: &[(String, bool)], is_broken: bool, indent: usize) -> String {
+    let mut text = format!("{name}(");
+    for (index, (argument, is_on_new_line)) in arguments.iter().enumerate() {
+        if index > 0 {
+            text.push(',');
+        }
+        match (is_on_new_line, index) {
+            (true, _) => text += &format!("\n{}", "    ".repeat(indent + 1)),
+            (false, 0) => {}
+            (false, _) => text.push(' '),
+        }
+        text += argument;
+    }
+    if is_broken {
+        text += &format!("\n{}", "    ".repeat(indent));
+    }
+    text.push(')');
+    text
+}
+
+/// A number as GLSL writes it.
+pub fn number_text(number: &Number, ty: &Type) -> Bound {
+    let is_hex = number.text.starts_with("0x") || number.text.starts_with("0X");
+    let text = match (ty.scalar(), number.value) {
+        (Some(Scalar::F32 | Scalar::AbstractFloat), NumberValue::Float(value)) if is_hex => {
+            format!("{:?}", value as f32)
+        }
+        (Some(Scalar::F32 | Scalar::AbstractFloat), NumberValue::Float(_)) => {
+            let has_point = number.text.contains(['.', 'e', 'E']);
+            if has_point { number.text.clone() } else { format!("{}.0", number.text) }
+        }
+        (Some(Scalar::F32 | Scalar::AbstractFloat), NumberValue::Integer(value)) => {
+            if is_hex {
+                format!("{value}.0")
+            } else {
+                format!("{}.0", number.text)
+            }
+        }
+        (Some(Scalar::U32), _) => format!("{}u", number.text),
+        (Some(Scalar::I32), NumberValue::Integer(value)) if value == i64::from(i32::MIN) => {
+            return Bound("-2147483647 - 1".to_owned(), 10);
+        }
+        _ => number.text.clone(),
+    };
+    match text.starts_with('-') {
+        true => Bound(text, UNARY),
+        false => Bound::primary(text),
+    }
+}

@@ -1,0 +1,100 @@
+//! The names that are in scope at a place of a function.
+
+use std::collections::BTreeMap;
+
+use lamplight_diagnostic::source::Span;
+use lamplight_diagnostic::{Diagnostic, codes};
+
+use super::global::{GlobalKind, Globals};
+use crate::condition::Condition;
+use crate::tree::{Meaning, Type};
+use crate::wesl::untranslated;
+
+/// What is known at a place.
+pub struct Scope<'a> {
+    pub globals: &'a Globals,
+    pub module: &'a [String],
+    /// Under which the place is.
+    pub condition: Condition,
+    frames: Vec<BTreeMap<String, Vec<Declared>>>,
+}
+
+/// A parameter or a local.
+#[derive(Debug, Clone)]
+struct Declared {
+    condition: Condition,
+    ty: Type,
+    /// The first byte of its name where it is declared.
+    number: u32,
+}
+
+impl<'a> Scope<'a> {
+    /// The scope of a module.
+    pub fn new(globals: &'a Globals, module: &'a [String]) -> Self {
+        let condition = Condition::Literal(true);
+        Self { globals, module, condition, frames: vec![BTreeMap::new()] }
+    }
+
+    pub fn enter(&mut self) {
+        self.frames.push(BTreeMap::new());
+    }
+
+    pub fn leave(&mut self) {
+        self.frames.pop();
+    }
+
+    /// Declares a name under the condition of this place.
+    pub fn declare(&mut self, name: &str, ty: Type, span: Span) {
+        let condition = self.condition.clone();
+        let declared = Declared { condition, ty, number: span.start };
+        if let Some(frame) = self.frames.last_mut() {
+            frame.entry(name.to_owned()).or_default().push(declared);
+        }
+    }
+
+    /// What a name means here, and its type.
+    pub fn look_up(&self, name: &str, span: Span) -> Result<(Meaning, Type), Diagnostic> {
+        for frame in self.frames.iter().rev() {
+            let declared = frame.get(name).map_or(&[][..], Vec::as_slice);
+            let possible: Vec<&Declared> =
+                declared.iter().filter(|one| !one.condition.excludes(&self.condition)).collect();
+            let Some(last) = possible.last() else { continue };
+            if possible.iter().any(|one| one.ty != last.ty) {
+                let what = format!("`{name}` has several types here, each under its condition");
+                return Err(untranslated(span, what));
+            }
+            return Ok((Meaning::Local(last.number), last.ty.clone()));
+        }
+        self.look_up_item(name, span)
+    }
+
+    /// Whether a name means a parameter or a local.
+    pub fn is_local(&self, name: &str) -> bool {
+        let here = |one: &Declared| !one.condition.excludes(&self.condition);
+        self.frames.iter().any(|frame| frame.get(name).is_some_and(|all| all.iter().any(here)))
+    }
+
+    fn look_up_item(&self, name: &str, span: Span) -> Result<(Meaning, Type), Diagnostic> {
+        let unknown = || {
+            Diagnostic::error(codes::MISSING_ITEM, format!("there is no `{name}`"))
+                .at(span, "used here")
+        };
+        let path = self.globals.meaning(self.module, name).ok_or_else(unknown)?;
+        let values: Vec<Type> = self
+            .globals
+            .items(&path)
+            .iter()
+            .filter(|global| !global.condition.excludes(&self.condition))
+            .filter_map(|global| match &global.kind {
+                GlobalKind::Constant { ty, .. } | GlobalKind::Variable(ty, _) => Some(ty.clone()),
+                _ => None,
+            })
+            .collect();
+        let first = values.first().cloned().ok_or_else(unknown)?;
+        if values.iter().any(|ty| *ty != first) {
+            let what = format!("`{name}` has several types here, each under its condition");
+            return Err(untranslated(span, what));
+        }
+        Ok((Meaning::Item(path), first))
+    }
+}

@@ -1,0 +1,11 @@
+//! Tests of the translation between shading languages.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod constructs;
+mod hostile;
+mod library;
+
+fn main() -> std::process::ExitCode {
+    lamplight_testing::run_tests(&[constructs::tests, hostile::tests, library::tests])
+}
