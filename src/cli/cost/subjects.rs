@@ -142,7 +142,8 @@ fn file_subjects(
         Ok((shader.entry.as_str(), known))
     });
     let with_name = |reason: String| Failure::input(format!("{}: {reason}", file.display()));
-    let known = known.collect::<Result<Vec<(&str, ReflectedStage)>, String>>().map_err(with_name)?;
+    let known =
+        known.collect::<Result<Vec<(&str, ReflectedStage)>, String>>().map_err(with_name)?;
     stage_subjects(&file.display().to_string(), known)
 }
 

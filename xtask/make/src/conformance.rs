@@ -55,7 +55,9 @@ impl Suite {
 
 /// Runs the suites in some folders. With `--verbose`, it also prints each difference.
 pub fn run(arguments: &[String]) -> CommandResult {
-    if let Some(("glsl", rest)) = arguments.split_first().map(|(first, rest)| (first.as_str(), rest)) {
+    if let Some(("glsl", rest)) =
+        arguments.split_first().map(|(first, rest)| (first.as_str(), rest))
+    {
         return glsl::run(rest);
     }
     let (flags, folders): (Vec<&String>, Vec<&String>) =
@@ -64,7 +66,9 @@ pub fn run(arguments: &[String]) -> CommandResult {
         return Err(CommandFailure::usage(format!("`{unknown}` is not known")));
     }
     if folders.is_empty() {
-        return Err(CommandFailure::usage("cargo xtask conformance [--verbose] DIR... | glsl [-I DIR]... DIR..."));
+        return Err(CommandFailure::usage(
+            "cargo xtask conformance [--verbose] DIR... | glsl [-I DIR]... DIR...",
+        ));
     }
     let mut differences = Vec::new();
     for folder in folders {

@@ -73,14 +73,7 @@ impl Writer<'_> {
             ("countTrailingZeros", [argument])
                 if is_scalar(argument) && self.is_cheap(&argument.value) =>
             {
-                let (text, is_unsigned) = (whole(0)?, value.ty == Type::U32);
-                Ok(Bound(
-                    match is_unsigned {
-                        true => format!("{text} == 0u ? 32u : uint(findLSB({text}))"),
-                        false => format!("{text} == 0 ? 32 : findLSB({text})"),
-                    },
-                    CHOICE,
-                ))
+                Ok(trailing_zeros(&whole(0)?, value.ty == Type::U32))
             }
             ("countLeadingZeros" | "countTrailingZeros", _) => {
                 Err(untranslated(value.span, format!("the function `{name}` of this argument")))
@@ -174,6 +167,15 @@ impl Writer<'_> {
 
 fn called(text: String) -> Bound {
     Bound(text, POSTFIX)
+}
+
+/// GLSL finds no bit in 0, where WGSL counts all of them.
+fn trailing_zeros(text: &str, is_unsigned: bool) -> Bound {
+    let choice = match is_unsigned {
+        true => format!("{text} == 0u ? 32u : uint(findLSB({text}))"),
+        false => format!("{text} == 0 ? 32 : findLSB({text})"),
+    };
+    Bound(choice, CHOICE)
 }
 
 fn is_scalar(argument: &Argument) -> bool {

@@ -150,15 +150,7 @@ impl Scope<'_> {
     ) -> Result<Type, Diagnostic> {
         match ty {
             Type::Scalar(_) => {
-                for argument in arguments.iter_mut() {
-                    let is_number = matches!(argument.value.kind, ExpressionKind::Number(_));
-                    let target = match argument.value.ty {
-                        // Numbers beyond those of an i32 are allowed here.
-                        Type::Scalar(Scalar::AbstractInteger) if is_number => ty.clone(),
-                        ref other => default_type(other),
-                    };
-                    convert(&mut argument.value, &target, self.globals)?;
-                }
+                self.convert_to_scalar(ty, arguments)?;
                 Ok(ty.clone())
             }
             Type::Vector(_, scalar) | Type::Matrix { scalar, .. } => {
@@ -198,6 +190,23 @@ impl Scope<'_> {
             }
             other => Err(mismatch(span, format!("{other} cannot be made"))),
         }
+    }
+
+    fn convert_to_scalar(
+        &mut self,
+        ty: &Type,
+        arguments: &mut [Argument],
+    ) -> Result<(), Diagnostic> {
+        for argument in arguments.iter_mut() {
+            let is_number = matches!(argument.value.kind, ExpressionKind::Number(_));
+            let target = match argument.value.ty {
+                // Numbers beyond those of an i32 are allowed here.
+                Type::Scalar(Scalar::AbstractInteger) if is_number => ty.clone(),
+                ref other => default_type(other),
+            };
+            convert(&mut argument.value, &target, self.globals)?;
+        }
+        Ok(())
     }
 
     fn structure(

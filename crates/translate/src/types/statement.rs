@@ -91,15 +91,10 @@ fn check_statement(
         Statement::Assign { target, operator, value } => {
             scope.sized(target)?;
             scope.expression(value)?;
+            let (span, ty) = (target.span, target.ty.clone());
             match operator {
-                None => {
-                    let ty = target.ty.clone();
-                    scope.fit(value, &ty)
-                }
-                Some(operator) => {
-                    let span = target.span;
-                    scope.binary(*operator, target, value, span).map(drop)
-                }
+                None => scope.fit(value, &ty),
+                Some(operator) => scope.binary(*operator, target, value, span).map(drop),
             }
         }
         Statement::Step { target, is_up: _ } => scope.sized(target),
