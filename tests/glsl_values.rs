@@ -16,7 +16,7 @@ use lamplight_testing::random::Random;
 use libtest_mimic::{Failed, Trial};
 
 /// How many random programs the tests make; `LAMPLIGHT_GLSL_PROGRAMS` asks for another number.
-const PROGRAMS: u64 = 200;
+const PROGRAMS: u64 = 60;
 /// The seed of the first program; `LAMPLIGHT_GLSL_SEED` chooses another one.
 const SEED: u64 = 1;
 
