@@ -137,12 +137,11 @@ fn check_size(unit: &Unit) -> Result<(), Diagnostic> {
 }
 
 fn lint_text(text: &TextForms<'_>, targets: &[Target]) -> Result<Diagnostics, Diagnostics> {
-    // naga refuses some texts for their aliases, which the lean one does not have.
-    let (composed, validated) = match validate(text.composed) {
-        Ok(validated) => (text.composed, validated),
-        Err(_) => (text.lean, validate(text.lean)?),
+    let for_browsers = targets.contains(&Target::WGSL);
+    let found = match text.composed.language {
+        Language::Wesl => validate::lint_wgsl(text.composed, for_browsers),
+        Language::Glsl => validate::lint(text.composed, &validate(text.composed)?, for_browsers),
     };
-    let found = validate::lint(composed, &validated, targets.contains(&Target::WGSL));
     // Browsers refuse some, and a text can make others errors.
     match found.iter().any(|one| one.severity == Severity::Error) {
         true => Err(found),

@@ -13,11 +13,16 @@ use super::{Validated, on_large_stack, uniformity};
 pub fn lint(composed: &Composed, validated: &Validated, for_browsers: bool) -> Diagnostics {
     match composed.language {
         Language::Glsl => uniformity::lint(composed, validated),
-        Language::Wesl => on_large_stack(|| rules::check(&composed.text))
-            .iter()
-            .filter_map(|problem| describe(composed, problem, for_browsers))
-            .collect(),
+        Language::Wesl => lint_wgsl(composed, for_browsers),
     }
+}
+
+/// The same for WGSL, which need not be validated for that.
+pub fn lint_wgsl(composed: &Composed, for_browsers: bool) -> Diagnostics {
+    on_large_stack(|| rules::check(&composed.text))
+        .iter()
+        .filter_map(|problem| describe(composed, problem, for_browsers))
+        .collect()
 }
 
 /// Whether there is anything to tell of, whatever text it is in.

@@ -21,7 +21,7 @@ mod uniformity;
 mod words;
 
 pub use alias::{NamesGlobal, may_alias};
-pub use browsers::{has_lints, lint};
+pub use browsers::{has_lints, lint, lint_wgsl};
 pub use every::validate_every;
 pub use glsl::{check_glsl, check_switches, parse_glsl};
 pub use guard::{catch_panics, guard, on_large_stack};
