@@ -11,6 +11,7 @@ use lamplight::bundle::Language;
 use lamplight::check::check;
 use lamplight::check::expression::CompiledExpression;
 use lamplight::check::library::Library;
+use lamplight::execute::executors::ExecutorEntry;
 use lamplight::execute::frame::{Buffers, DrawItem, Drawing, EntryPoint, Mesh, PipelineState};
 use lamplight::execute::{self, Session, executors, kernel};
 use lamplight::source::{Files as _, Memory, SourceSet};
@@ -22,7 +23,8 @@ type Run = fn() -> Result<(), Failed>;
 
 /// One test for each property of the harness and each executor.
 pub fn tests() -> Vec<Trial> {
-    let executors = executors::ALL.iter().map(|executor| {
+    let executors = executors::ALL.iter().filter(|entry| !entry.reads_glsl);
+    let executors = executors.map(|executor| {
         Trial::test(format!("harness::executor::{}", executor.name), move || {
             execute::on_thread(|| {
                 runs(executor).map_err(|failed| failed.message().unwrap_or_default().to_owned())
@@ -31,8 +33,9 @@ pub fn tests() -> Vec<Trial> {
             .map_err(Failed::from)
         })
     });
-    let others: [(&str, Run); 10] = [
+    let others: [(&str, Run); 11] = [
         ("library", library),
+        ("library_sources", library_sources),
         ("browsers", browsers),
         ("expressions", expressions),
         ("expression_errors", expression_errors),
@@ -59,17 +62,17 @@ const PART: usize = 4;
 fn opened<T: Send>(
     run: impl FnOnce(&mut [check::OpenExecutor]) -> Result<T, Failed> + Send,
 ) -> Result<T, Failed> {
-    opened_of(|_| true, run)
+    opened_of(|entry| !entry.reads_glsl, run)
 }
 
 /// Runs a function with some executors open.
 fn opened_of<T: Send>(
-    wanted: fn(&str) -> bool,
+    wanted: fn(&ExecutorEntry) -> bool,
     run: impl FnOnce(&mut [check::OpenExecutor]) -> Result<T, Failed> + Send,
 ) -> Result<T, Failed> {
     let outcome = execute::on_thread(|| {
         let mut open = Vec::new();
-        for entry in executors::ALL.iter().filter(|entry| wanted(entry.name)) {
+        for entry in executors::ALL.iter().copied().filter(|entry| wanted(entry)) {
             open.push(check::OpenExecutor { executor: entry.name, session: entry.start()? });
         }
         run(&mut open).map_err(|failed| failed.message().unwrap_or_default().to_owned())
@@ -79,15 +82,26 @@ fn opened_of<T: Send>(
 
 /// The library's cases pass in both languages, on every executor that is not in a browser.
 fn library() -> Result<(), Failed> {
-    library_on(|name| !BROWSERS.contains(&name), 1)
+    let wanted = |entry: &ExecutorEntry| !BROWSERS.contains(&entry.name) && !entry.reads_glsl;
+    library_on(wanted, &[Language::Wesl, Language::Glsl], 1)
+}
+
+/// The GLSL modules pass as they are written, compiled by a driver's own front end.
+fn library_sources() -> Result<(), Failed> {
+    library_on(|entry| entry.reads_glsl, &[Language::Glsl], 1)
 }
 
 /// A part of the library's cases passes on the executors in a browser.
 fn browsers() -> Result<(), Failed> {
-    library_on(|name| BROWSERS.contains(&name), PART)
+    let wanted = |entry: &ExecutorEntry| BROWSERS.contains(&entry.name);
+    library_on(wanted, &[Language::Wesl, Language::Glsl], PART)
 }
 
-fn library_on(wanted: fn(&str) -> bool, part: usize) -> Result<(), Failed> {
+fn library_on(
+    wanted: fn(&ExecutorEntry) -> bool,
+    languages: &[Language],
+    part: usize,
+) -> Result<(), Failed> {
     opened_of(wanted, |open| {
         let library = Library::shipped(LIBRARY_FILES);
         let sources = Mutex::new(SourceSet::default());
@@ -99,7 +113,7 @@ fn library_on(wanted: fn(&str) -> bool, part: usize) -> Result<(), Failed> {
             .step_by(if only.is_empty() { part } else { 1 })
             .collect();
         let report = library
-            .check(&sources, &paths, &[Language::Wesl, Language::Glsl], open)
+            .check(&sources, &paths, languages, open)
             .map_err(|errors| render(&sources, &errors))?;
         if std::env::var_os("LAMPLIGHT_TABLE").is_some() {
             println!("{}", check::report_table(&report));

@@ -60,6 +60,7 @@ mod sketch;
 mod specialise;
 mod tables;
 mod toolchain;
+mod translated;
 mod traps;
 mod validators;
 
@@ -114,6 +115,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     sketch::tests,
     specialise::tests,
     tables::tests,
+    translated::tests,
     traps::tests,
     validators::tests,
 ];

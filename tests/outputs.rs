@@ -15,7 +15,8 @@ use libtest_mimic::{Failed, Trial};
 type Outcome = Result<(), Failed>;
 
 pub fn tests() -> Vec<Trial> {
-    let executors = executors::ALL.iter().filter(|one| !OTHERS.contains(&one.name));
+    let executors =
+        executors::ALL.iter().filter(|one| !OTHERS.contains(&one.name) && !one.reads_glsl);
     executors
         .map(|executor| {
             let name = format!("outputs::values::{}", executor.name);

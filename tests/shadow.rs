@@ -16,7 +16,7 @@ use lamplight::check::library::Library;
 use lamplight::execute::fixture::{
     Address, Compare, Fixture, FixtureSampler, FixtureTexture, TextureKind,
 };
-use lamplight::execute::{Session, executors, kernel, on_thread};
+use lamplight::execute::{Session, executors, on_thread};
 use lamplight::source::{Memory, SourceSet};
 use lamplight_testing::joined_messages;
 use libtest_mimic::{Failed, Trial};
@@ -196,7 +196,9 @@ fn everywhere(property: Property) -> Result<(), Failed> {
         let mut failed = String::new();
         for entry in executors::ALL {
             let mut session = entry.start()?;
-            for language in [Language::Wesl, Language::Glsl] {
+            let languages = [Language::Wesl, Language::Glsl];
+            let runs = |language: &Language| *language == Language::Glsl || !entry.reads_glsl;
+            for language in languages.into_iter().filter(runs) {
                 let mut run = Run { session: session.as_mut(), library: &library, language };
                 if let Err(error) = property(&mut run) {
                     failed += &format!("{language:?} on {}: {error}\n", entry.name);
@@ -229,15 +231,15 @@ impl Run<'_> {
         let sources = Mutex::new(SourceSet::default());
         let module = self
             .library
-            .module(&sources, "scene", self.language, &[function.to_owned()])
+            .checked_module(&sources, "scene", self.language, &[function.to_owned()])
             .map_err(|errors| joined_messages(&errors))?;
         let fixtures: BTreeMap<_, _> = map
             .into_iter()
             .flat_map(|(map, smp)| [("map", Fixture::Texture(map)), ("smp", Fixture::Sampler(smp))])
             .map(|(name, fixture)| (name.to_owned(), Arc::new(fixture)))
             .collect();
-        let kernel = kernel::build_kernel(&module, function, &fixtures)
-            .map_err(|error| joined_messages(&[error]))?;
+        let kernel =
+            module.kernel(function, &fixtures).map_err(|error| joined_messages(&[error]))?;
         let results =
             self.session.run(&kernel, words).map_err(|error| joined_messages(&[error]))?;
         Ok(results.into_iter().map(|word| f64::from(f32::from_bits(word))).collect())

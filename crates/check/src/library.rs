@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::cases::{self, CaseFile};
 use super::check::values::{MeasuredCase, ValueRecord, measure_values};
-use super::check::{self, CheckReport, OpenExecutor};
+use super::check::{self, CheckReport, CheckedModule, OpenExecutor};
 use super::ratchet::{self, Ratchet};
 use super::untested;
 use lamplight_bundle::Language;
@@ -151,7 +151,7 @@ impl Library {
     ) -> Result<CheckReport, Diagnostics> {
         let files = self.read(sources, paths)?;
         let subjects = |module: &str, language: Language, functions: &[String]| {
-            self.module(sources, module, language, functions)
+            self.checked_module(sources, module, language, functions)
         };
         let mut report = check::check_with(&files, languages, &subjects, open, options)?;
         for (module, file) in &files {
@@ -177,7 +177,7 @@ impl Library {
     ) -> Result<Vec<MeasuredCase>, Diagnostics> {
         let files = self.read(sources, paths)?;
         let subjects = |module: &str, language: Language, functions: &[String]| {
-            self.module(sources, module, language, functions)
+            self.checked_module(sources, module, language, functions)
         };
         let options = check::CheckOptions {
             references: self.has_references(),
@@ -243,25 +243,55 @@ impl Library {
         language: Language,
         functions: &[String],
     ) -> Result<Arc<naga::Module>, Diagnostics> {
+        let (root, text) = self.root_of(module, language, "");
+        let packages = self.with_root(&root, text);
+        self.compose_module(sources, &packages, &root, language, functions)
+            .map(|validated| Arc::new(validated.module))
+    }
+
+    /// The same, with the text itself where that is GLSL.
+    pub fn checked_module(
+        &self,
+        sources: &Mutex<SourceSet>,
+        module: &str,
+        language: Language,
+        functions: &[String],
+    ) -> Result<CheckedModule, Diagnostics> {
+        let found = self.module(sources, module, language, functions)?;
+        if language == Language::Wesl {
+            return Ok(CheckedModule::without_text(found));
+        }
+        let (root, text) = self.root_of(module, language, "#define LAMPLIGHT_COMBINED_SAMPLERS\n");
+        let packages = self.with_root(&root, text);
+        let composed = composed(sources, &packages, &root, language, functions, &self.settings)?;
+        let text = composed.text.split_once('\n').map_or("", |(_, text)| text);
+        let source = Some(text.replace(EMPTY_MAIN, "").into());
+        Ok(CheckedModule { module: found, source })
+    }
+
+    /// The file that a module is composed from, and its text if the package does not have it.
+    fn root_of(&self, module: &str, language: Language, head: &str) -> (String, Option<String>) {
         let path = module.replace("::", "/");
-        let (root, extra) = match language {
+        match language {
             Language::Wesl => {
                 let wesl = format!("{path}.wesl");
                 let exists = self.files.read(&wesl).is_ok_and(|found| found.is_some());
                 (if exists { wesl } else { format!("{path}.wgsl") }, None)
             }
             Language::Glsl => {
-                let text = format!("#version 450\n#include \"{path}.glsl\"\nvoid main() {{}}\n");
+                let text = format!("#version 450\n{head}#include \"{path}.glsl\"\n{EMPTY_MAIN}\n");
                 ("lamplight_check.frag.glsl".to_owned(), Some(text))
             }
-        };
+        }
+    }
+
+    /// The package with one more file.
+    fn with_root(&self, root: &str, text: Option<String>) -> Packages {
         let files = LibraryOverlay {
             base: self.files.clone(),
-            extra: extra.map(|text| (root.clone(), text)).into_iter().collect(),
+            extra: text.map(|text| (root.to_owned(), text)).into_iter().collect(),
         };
-        let packages = self.packages(Package { name: self.name.clone(), files: Box::new(files) });
-        self.compose_module(sources, &packages, &root, language, functions)
-            .map(|validated| Arc::new(validated.module))
+        self.packages(Package { name: self.name.clone(), files: Box::new(files) })
     }
 
     /// Composes a root file (its path and its text) in a package of its own, which imports this
@@ -318,6 +348,9 @@ impl Library {
         self.dependencies.iter().map(|(name, files)| shared_package(name, files)).collect()
     }
 }
+
+/// The entry point of a text that needs one.
+const EMPTY_MAIN: &str = "void main() {}";
 
 fn shared_package(name: &str, files: &Arc<dyn Files>) -> Package {
     Package {

@@ -21,6 +21,8 @@ pub struct ExecutorEntry {
     pub open: OpenSession,
     /// What it can draw from the bytes of a bundle.
     pub shipping: Option<Shipping>,
+    /// Whether it compiles the text of GLSL modules itself, so that it runs no others.
+    pub reads_glsl: bool,
 }
 
 pub type OpenSession = fn() -> Result<Box<dyn Session>, Unavailable>;
@@ -85,10 +87,20 @@ fn open_vulkan(
 /// which OpenGL that is.
 #[cfg(not(target_family = "wasm"))]
 fn opened_opengl(target: Target) -> Result<Box<dyn Session>, Unavailable> {
+    Ok(Box::new(super::gpu::OpenGl::open(opengl_of(target)?, target)?))
+}
+
+/// The same for the author's own texts in GLSL.
+#[cfg(not(target_family = "wasm"))]
+fn opened_source(target: Target) -> Result<Box<dyn Session>, Unavailable> {
+    Ok(Box::new(super::gpu::OpenGl::open_source(opengl_of(target)?, target)?))
+}
+
+#[cfg(not(target_family = "wasm"))]
+fn opengl_of(target: Target) -> Result<super::gpu::OpenGlApi, Unavailable> {
     let version = lamplight_emit::targets::find(target).and_then(|entry| entry.glsl);
     let not_glsl = || format!("`{target}` is not GLSL: its file has no version");
-    let api = super::gpu::OpenGlApi::of_glsl(version.ok_or_else(not_glsl)?);
-    Ok(Box::new(super::gpu::OpenGl::open(api, target)?))
+    Ok(super::gpu::OpenGlApi::of_glsl(version.ok_or_else(not_glsl)?))
 }
 
 /// A session in a page of a browser.

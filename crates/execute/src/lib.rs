@@ -23,6 +23,8 @@ pub mod raster;
 pub mod sampling;
 pub mod shipped;
 #[cfg(not(target_family = "wasm"))]
+mod source;
+#[cfg(not(target_family = "wasm"))]
 pub mod web;
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};

@@ -7,7 +7,7 @@ use lamplight_bundle::Language;
 use lamplight_check::cases::{CaseFile, Rows};
 use lamplight_check::check::job::{BoundOracle, CaseJob, Goal};
 use lamplight_check::check::law::RowResults;
-use lamplight_check::check::{CheckOptions, job, law, verdict};
+use lamplight_check::check::{CheckOptions, CheckedModule, job, law, verdict};
 use lamplight_check::library::Library;
 use lamplight_check::tolerance;
 use lamplight_compose::SourceMap;
@@ -121,7 +121,7 @@ fn make_suite<'f>(
             module,
             file,
             &[Language::Wesl],
-            &|_, _, _| Ok(parsed.clone()),
+            &|_, _, _| Ok(CheckedModule::without_text(parsed.clone())),
             // A mutant changes one module, and its results are compared with the case's oracle, so
             // laws about several functions are left out.
             &CheckOptions { partners: false, ..CheckOptions::default() },

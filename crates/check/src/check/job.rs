@@ -3,7 +3,7 @@
 
 use crate::cases::{Case, CaseFile, FormulaText, Oracle, Rows};
 use crate::check::partner::Partner;
-use crate::check::{CheckOptions, Subjects, partner};
+use crate::check::{CheckOptions, CheckedModule, Subjects, partner};
 use crate::formula::{Formula, Scope};
 use crate::laws::Law;
 use crate::references::{CallArguments, Expected, Reference};
@@ -14,7 +14,6 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_eval::{Bounded, FindingKind, Number};
 use lamplight_execute::fixture::Fixture;
 use lamplight_execute::interpreter::{Interpreter, KernelCalls, slot_value};
-use lamplight_execute::kernel;
 use lamplight_execute::kernel::{Kernel, TypeShape};
 use lamplight_files::limits::{CASE_ROWS, CASE_WORDS, CASE_WORK, Steps};
 use naga::ScalarKind;
@@ -161,10 +160,10 @@ fn placed_at(error: Diagnostic, case: &Case) -> Diagnostic {
 /// The function in each language, at least one. Its interface must be the same in all.
 fn build_kernels(
     case: &Case,
-    modules: &[(Language, Arc<naga::Module>)],
+    modules: &[(Language, CheckedModule)],
 ) -> Result<Vec<(Language, Kernel)>, Diagnostic> {
-    let build = |(language, naga): &(Language, Arc<naga::Module>)| {
-        Ok((*language, kernel::build_kernel(naga, &case.function, &case.fixtures)?))
+    let build = |(language, subject): &(Language, CheckedModule)| {
+        Ok((*language, subject.kernel(&case.function, &case.fixtures)?))
     };
     let kernels: Vec<_> = modules.iter().map(build).collect::<Result<_, Diagnostic>>()?;
     if kernels.is_empty() {
@@ -177,7 +176,7 @@ fn build_kernels(
 fn make_job<'a>(
     module: &str,
     CasePlace { file, index, record, total }: CasePlace<'a, '_>,
-    modules: &[(Language, Arc<naga::Module>)],
+    modules: &[(Language, CheckedModule)],
     (subjects, options): (&Subjects<'_>, &CheckOptions<'_>),
 ) -> Result<CaseJob<'a>, Diagnostic> {
     let case = &file.cases[index];

@@ -19,6 +19,7 @@ pub use proof::{Parity, Proof, Spec, ValueProof};
 pub use report::{headroom_text, lacking_text, report_table, short_number, stricter_cases};
 pub use verdict::{CaseVerdict, Worst};
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -29,14 +30,42 @@ use job::CaseJob;
 use lamplight_bundle::Language;
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes, stopped_message};
-use lamplight_execute::kernel::Kernel;
+use lamplight_execute::fixture::Fixture;
+use lamplight_execute::kernel::{self, Kernel};
 use lamplight_execute::{STACK, Session};
 use lamplight_validate::on_large_stack;
 
 /// Composes the module of a path in a language, with only the named functions and what they need.
 /// The result is parsed and valid, and the functions keep their names.
 pub type Subjects<'a> =
-    dyn Fn(&str, Language, &[String]) -> Result<Arc<naga::Module>, Diagnostics> + Sync + 'a;
+    dyn Fn(&str, Language, &[String]) -> Result<CheckedModule, Diagnostics> + Sync + 'a;
+
+/// A composed module.
+#[derive(Debug, Clone)]
+pub struct CheckedModule {
+    /// As naga reads it.
+    pub module: Arc<naga::Module>,
+    /// For GLSL, the text itself, for drivers that compile it.
+    pub source: Option<Arc<str>>,
+}
+
+impl CheckedModule {
+    /// A module that has no text of its own.
+    pub fn without_text(module: Arc<naga::Module>) -> Self {
+        Self { module, source: None }
+    }
+
+    /// A function of it, ready to be run.
+    pub fn kernel(
+        &self,
+        function: &str,
+        fixtures: &BTreeMap<String, Arc<Fixture>>,
+    ) -> Result<Kernel, Diagnostic> {
+        let mut kernel = kernel::build_kernel(&self.module, function, fixtures)?;
+        kernel.source.clone_from(&self.source);
+        Ok(kernel)
+    }
+}
 
 pub struct OpenExecutor {
     /// Name on the command line.

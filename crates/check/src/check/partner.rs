@@ -11,7 +11,7 @@ use crate::cases::{Rows, word_of};
 use crate::formula::{Formula, Scope};
 use crate::laws::{self, Albedo, Area, Equality, IntegralValue, Inverse, Law};
 use lamplight_diagnostic::{Diagnostic, Diagnostics};
-use lamplight_execute::kernel::{self, Kernel, word_value};
+use lamplight_execute::kernel::{Kernel, word_value};
 use naga::ScalarKind;
 
 /// Another function that a law is about.
@@ -38,7 +38,7 @@ pub fn prepare_partners(
             .map(|language| {
                 let found = subjects(module, *language, &[function.to_owned()])
                     .map_err(|errors| first_error(errors, law, name))?;
-                let kernel = kernel::build_kernel(&found, function, &BTreeMap::new());
+                let kernel = found.kernel(function, &BTreeMap::new());
                 Ok((*language, kernel.map_err(|error| error.at(law.span, "named here"))?))
             })
             .collect::<Result<Vec<_>, Diagnostic>>()?;

@@ -18,6 +18,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     samples: Some(1),
     open: || Ok::<_, Unavailable>(Box::new(Cpu::default())),
     shipping: None,
+    reads_glsl: false,
 };
 
 /// Keeps the program of the last kernel, since all rows of one kernel are run one after another.

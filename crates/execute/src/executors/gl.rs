@@ -19,4 +19,5 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
         })
     },
     shipping: None,
+    reads_glsl: false,
 };

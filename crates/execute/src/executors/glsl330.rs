@@ -14,6 +14,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     samples: None,
     open,
     shipping: Some(Shipping { target: Target::GLSL330, open }),
+    reads_glsl: false,
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {

@@ -17,6 +17,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     samples: None,
     open,
     shipping: Some(Shipping { target: Target::HLSL, open }),
+    reads_glsl: false,
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {

@@ -16,6 +16,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     samples: Some(1),
     open,
     shipping: Some(Shipping { target: Target::MSL, open }),
+    reads_glsl: false,
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {

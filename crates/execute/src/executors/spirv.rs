@@ -27,4 +27,5 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
             )
         },
     }),
+    reads_glsl: false,
 };

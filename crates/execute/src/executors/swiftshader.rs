@@ -20,6 +20,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     open,
     // wgpu reads WGSL itself.
     shipping: Some(Shipping { target: Target::WGSL, open }),
+    reads_glsl: false,
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {

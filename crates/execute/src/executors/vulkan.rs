@@ -13,4 +13,5 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     samples: Some(DEVICE_SAMPLES),
     open: || super::open_vulkan(AdapterName::Without(swiftshader::NAME), Shaders::Translated),
     shipping: None,
+    reads_glsl: false,
 };

@@ -96,6 +96,9 @@ pub struct Kernel {
     pub results: Vec<TypeShape>,
     /// Steps that all calls of it together may take on the evaluator.
     pub steps: u64,
+    /// For a function of GLSL, the text that declares it and what it needs, with combined samplers
+    /// and without a version: for drivers that compile the text themselves.
+    pub source: Option<Arc<str>>,
 }
 
 impl Kernel {
@@ -192,6 +195,7 @@ pub fn build_kernel(
         parameters,
         results,
         steps: CASE_WORK,
+        source: None,
     };
     if kernel.batch() == 0 {
         return Err(Diagnostic::error(

@@ -95,7 +95,7 @@ impl Scope<'_> {
         let possible: Vec<&Signature> = globals
             .items(path)
             .iter()
-            .filter(|global: &&Global| !global.condition.excludes(&self.condition))
+            .filter(|global: &&Global| !self.is_absent(&global.condition))
             .filter_map(|global| match &global.kind {
                 GlobalKind::Function(signature) => Some(signature),
                 _ => None,
@@ -132,7 +132,7 @@ impl Scope<'_> {
         count: usize,
     ) -> Option<Vec<&'f MemberType>> {
         let here: Vec<&MemberType> =
-            fields.iter().filter(|field| !field.condition.excludes(&self.condition)).collect();
+            fields.iter().filter(|field| !self.is_absent(&field.condition)).collect();
         if here.len() == count {
             return Some(here);
         }

@@ -92,9 +92,9 @@ impl Scope<'_> {
             }
             Type::Structure(path) => {
                 let members = self.globals.members(path).unwrap_or_default();
-                let mut found = members.iter().filter(|member| {
-                    member.name == name && !member.condition.excludes(&self.condition)
-                });
+                let mut found = members
+                    .iter()
+                    .filter(|member| member.name == name && !self.is_absent(&member.condition));
                 let unknown = || mismatch(span, format!("`{}` has no member `{name}`", path.name));
                 let first = found.next().ok_or_else(unknown)?;
                 match found.all(|member| is_alike(&member.ty, &first.ty)) {

@@ -57,7 +57,7 @@ impl<'a> Scope<'a> {
         for frame in self.frames.iter().rev() {
             let declared = frame.get(name).map_or(&[][..], Vec::as_slice);
             let possible: Vec<&Declared> =
-                declared.iter().filter(|one| !one.condition.excludes(&self.condition)).collect();
+                declared.iter().filter(|one| !self.is_absent(&one.condition)).collect();
             let Some(last) = possible.last() else { continue };
             if possible.iter().any(|one| one.ty != last.ty) {
                 let what = format!("`{name}` has several types here, each under its condition");
@@ -68,9 +68,15 @@ impl<'a> Scope<'a> {
         self.look_up_item(name, span)
     }
 
+    /// Whether something under a condition surely does not exist here. Where conditions contradict
+    /// each other, nothing is reached, and everything exists.
+    pub fn is_absent(&self, condition: &Condition) -> bool {
+        condition.excludes(&self.condition) && !self.condition.excludes(&self.condition)
+    }
+
     /// Whether a name means a parameter or a local.
     pub fn is_local(&self, name: &str) -> bool {
-        let here = |one: &Declared| !one.condition.excludes(&self.condition);
+        let here = |one: &Declared| !self.is_absent(&one.condition);
         self.frames.iter().any(|frame| frame.get(name).is_some_and(|all| all.iter().any(here)))
     }
 
@@ -84,7 +90,7 @@ impl<'a> Scope<'a> {
             .globals
             .items(&path)
             .iter()
-            .filter(|global| !global.condition.excludes(&self.condition))
+            .filter(|global| !self.is_absent(&global.condition))
             .filter_map(|global| match &global.kind {
                 GlobalKind::Constant { ty, .. } | GlobalKind::Variable(ty, _) => Some(ty.clone()),
                 _ => None,

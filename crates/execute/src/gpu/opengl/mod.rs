@@ -13,6 +13,7 @@ use crate::fixture::{Address, Compare, Fixture, FixtureSampler, FixtureTexture};
 use crate::frame::{Drawing, Frame};
 use crate::gpu::{emitted, executor_failed};
 use crate::kernel::{INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
+use crate::source;
 use crate::{Session, ShippedPair};
 pub use context::OpenGlApi;
 use context::OpenGlContext;
@@ -29,6 +30,8 @@ const INPUTS: [u32; 2] = [0, 0];
 pub struct OpenGl {
     context: OpenGlContext,
     target: Target,
+    /// Whether the driver compiles the author's own text in the place of the emitted one.
+    is_source: bool,
     kept: HashMap<u64, OpenGlKernel>,
 }
 
@@ -50,7 +53,13 @@ struct TextureUnit {
 impl OpenGl {
     /// Opens a context for the texts of a target. The error is a message.
     pub fn open(api: OpenGlApi, target: Target) -> Result<Self, String> {
-        Ok(Self { context: OpenGlContext::open(api)?, target, kept: HashMap::new() })
+        let context = OpenGlContext::open(api)?;
+        Ok(Self { context, target, is_source: false, kept: HashMap::new() })
+    }
+
+    /// The same for the author's own texts in GLSL.
+    pub fn open_source(api: OpenGlApi, target: Target) -> Result<Self, String> {
+        Ok(Self { is_source: true, ..Self::open(api, target)? })
     }
 
     fn has_extensions(&self, text: &[u8]) -> Result<(), Diagnostic> {
@@ -65,7 +74,16 @@ impl OpenGl {
     }
 
     fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
-        if !self.kept.contains_key(&kernel.code) {
+        if self.kept.contains_key(&kernel.code) {
+            return Ok(());
+        }
+        if self.is_source {
+            let api = self.context.api();
+            let text = source::fragment_text(kernel, source_head(api))?;
+            let vertex = triangle_stage(api);
+            let kept = self.context.with(|gl| keep_source(gl, kernel, &vertex, &text));
+            self.kept.insert(kernel.code, kept.map_err(executor_failed)?);
+        } else {
             let emitted = emitted::emit_kernel(kernel, self.target)?;
             self.has_extensions(&emitted.bytes)?;
             let vertex = triangle_stage(self.context.api());
@@ -136,6 +154,43 @@ fn keep_kernel(
     }
     check_error(gl)?;
     Ok(OpenGlKernel { program, inputs, units })
+}
+
+/// What comes before the author's text.
+fn source_head(api: OpenGlApi) -> &'static str {
+    match api {
+        OpenGlApi::Core(..) => "#version 450 core\n",
+        // Shadow samplers have no precision of their own in ES.
+        OpenGlApi::Embedded(..) => {
+            "#version 300 es\nprecision highp float;\nprecision highp int;\n\
+             precision highp sampler2D;\nprecision highp sampler2DShadow;\n\
+             precision highp samplerCubeShadow;\n"
+        }
+    }
+}
+
+/// The same for the author's own text, whose textures are combined with the samplers behind them.
+fn keep_source(
+    gl: &glow::Context,
+    kernel: &Kernel,
+    vertex: &str,
+    text: &str,
+) -> Result<OpenGlKernel, String> {
+    let program = link_program(gl, vertex, text)?;
+    set_unit(gl, program, source::INPUTS, 0);
+    let mut units = Vec::new();
+    let resources: Vec<_> = kernel.resources().collect();
+    for (order, resource) in resources.iter().enumerate() {
+        let Fixture::Texture(fixture) = &*resource.fixture else { continue };
+        let index = units.len() as u32 + 1;
+        set_unit(gl, program, &source::texture_name(resource.binding), index);
+        let settings = resources.get(order + 1).and_then(|next| next.fixture.sampler());
+        let sampler = settings.map(|settings| create_sampler(gl, settings)).transpose()?;
+        let (target, texture) = upload_fixture(gl, fixture)?;
+        units.push(TextureUnit { index, target, texture, sampler });
+    }
+    check_error(gl)?;
+    Ok(OpenGlKernel { program, inputs: 0, units })
 }
 
 /// The unit that the text declares. Where the language has no such declaration, the next free one
