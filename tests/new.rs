@@ -30,7 +30,7 @@ pub fn tests() -> Vec<Trial> {
         ("forms", functions::forms),
         ("reason", functions::reason),
         ("axis_value", axis_values::is_listed),
-        ("axis_value_places", axis_values::is_an_error),
+        ("axis_value_places", axis_values::is_told),
         ("diagnostic", diagnostic),
         ("executor", executor),
         ("executor_own", own_executor),

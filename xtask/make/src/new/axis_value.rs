@@ -4,7 +4,7 @@ use lamplight::bundle::key;
 use lamplight::permute::{Manifest, manifest};
 use lamplight::source::SourceSet;
 
-use super::axis_places::{program_files, testing_lines, with_errors};
+use super::axis_places::{program_files, testing_lines};
 use super::{NewFiles, Repository, TaskKind, check_name};
 
 pub const KIND: TaskKind = TaskKind {
@@ -64,7 +64,6 @@ fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<NewFil
     }
     let places = AxisPlaces::find(repository, &read_manifest(&old)?, &named)?;
     let mut next = places.steps(&named);
-    files.extend(places.changed);
     if has_pictures {
         next.push(format!(
             "{PICTURES}: what a picture takes from `{value}`; its row is a copy of the last one: `{row}`"
@@ -81,8 +80,6 @@ fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<NewFil
 
 /// Where a program tests the axis.
 struct AxisPlaces {
-    /// Files of GLSL in which the new value is an error now.
-    changed: Vec<(String, String)>,
     /// Lines that test the axis, with their places.
     lines: Vec<String>,
     /// Other programs that test an axis of this name in the same files.
@@ -93,24 +90,16 @@ impl AxisPlaces {
     fn find(
         repository: &Repository<'_>,
         manifest: &Manifest,
-        NamedValue { program, axis, value }: &NamedValue<'_>,
+        NamedValue { program, axis, value: _ }: &NamedValue<'_>,
     ) -> Result<Self, String> {
-        let mut found = Self { changed: Vec::new(), lines: Vec::new(), sharing: Vec::new() };
+        let mut found = Self { lines: Vec::new(), sharing: Vec::new() };
         let mut testing = Vec::new();
         for (path, text) in program_files(repository, manifest, program)? {
-            let made = if path.ends_with(".glsl") {
-                with_errors(&text, axis, value)
-            } else {
-                text.clone()
-            };
-            let lines = testing_lines(&path, &made, axis);
+            let lines = testing_lines(&path, &text, axis);
             if !lines.is_empty() {
                 testing.push(path.clone());
             }
             found.lines.extend(lines);
-            if made != text {
-                found.changed.push((path, made));
-            }
         }
         let others = manifest.programs.iter().filter(|other| other.name != *program);
         for other in others.filter(|other| other.space.axis(axis).is_some()) {
@@ -123,17 +112,11 @@ impl AxisPlaces {
     }
 
     fn steps(&self, NamedValue { axis, value, .. }: &NamedValue<'_>) -> Vec<String> {
-        let (name, constant) = (axis.to_uppercase(), format!("{axis}_{value}").to_uppercase());
         let mut steps = vec![format!(
-            "the effect, `@if({axis} == {value})` in WESL and `#if {name} == {constant}` in GLSL, with an import in WESL and an `#include` in GLSL of what it calls (test library::values_have_effect); what a branch uses may have a condition of its own, and a function of WESL must return for `{value}` too; these lines test the axis:"
+            "the effect, `@if({axis} == {value})`, with an import of what it calls (test library::values_have_effect); what a branch uses may have a condition of its own, and an `@else` takes the new value too; these lines test the axis:"
         )];
         steps.extend(self.lines.iter().map(|line| format!("  {line}")));
-        if !self.changed.is_empty() {
-            steps.push(format!(
-                "replace each `#error` for `{axis}={value}`, or delete it with its `#elif` where `#else` is right (test library::)"
-            ));
-        }
-        steps.push("comments of uniform fields that list values, in both languages".to_owned());
+        steps.push("comments of uniform fields that list values".to_owned());
         steps.extend(self.sharing.iter().map(|other| {
             format!("`{other}` has the axis too, and shares files: cargo xtask new axis-value {other}::{axis}={value}, if it has not the value yet")
         }));

@@ -129,6 +129,7 @@ const FIELDS: &[(&str, &str)] = &[
         "shipping: ",
         "`Some(Shipping { target, open })` if it draws the files of a target as they are.",
     ),
+    ("reads_glsl: ", "Whether it compiles the text of GLSL modules itself, as `glsl_source` does."),
 ];
 
 /// The text with a comment above each field of [`FIELDS`].
@@ -194,6 +195,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
         })
     },
     shipping: None,
+    reads_glsl: false,
 };
 "#;
 
@@ -218,6 +220,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     samples: None,
     open: || Ok(Box::new(Own { adapter: open_device()? })),
     shipping: None,
+    reads_glsl: false,
 };
 
 /// An open device.

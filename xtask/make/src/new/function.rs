@@ -1,8 +1,6 @@
 //! A function of the shader library, in a module that exists or in a new one.
 
-use lamplight::bundle::Language;
-
-use super::compiled::first_problem;
+use super::compiled::{first_problem, translated_module};
 use super::formula::FormulaBody;
 use super::parameter::{NewParameter, Type, read_parameters, type_of};
 use super::{NewFiles, Repository, TaskKind, check_name};
@@ -28,96 +26,66 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<NewFil
             return Err(format!("after the name: {what}, as in the usage"));
         }
     };
-    let mut new = Signature {
+    let new = Signature {
         folder,
         module,
         name,
         parameters: read_parameters(parameters)?,
         result: type_of(result)?,
         formula,
-        untranslated: None,
     };
     let stem = format!("shaderlib/{folder}/{module}");
     let reference = format!("crates/check/src/references/{folder}_{module}.rs");
-    let edits: [(String, FileEdit); 6] = [
+    let edits: [(String, FileEdit); 5] = [
         (format!("{stem}.wesl"), wesl),
-        (format!("{stem}.glsl"), glsl),
         (format!("{stem}.toml"), cases),
         (format!("{stem}.plot.toml"), plot),
         (reference.clone(), reference_text),
         (format!("tests/plain/{folder}/{module}.wesl"), plain),
     ];
-    complete_formula(repository, &mut new, &edits)?;
+    check_formula(repository, &new, &edits[0].0)?;
     let mut files = Vec::new();
     for (file, edit) in edits {
         let text = edit(repository.find(&file).as_deref(), &new)
             .map_err(|problem| format!("`{file}`: {problem}"))?;
         files.push((file, text));
     }
+    let made = translated_module(repository.root, (&files[0].0, &files[0].1), [folder, module])?;
+    files.push((format!("{stem}.glsl"), made));
     let is_new = repository.find(&format!("{stem}.wesl")).is_none();
     Ok(NewFiles { files, next: steps(&stem, &reference, &new, is_new) })
 }
 
-/// Compiles the formula in its module, in WESL and then in GLSL. If it cannot be translated for
-/// GLSL, `new.untranslated` says why.
-fn complete_formula(
+/// Compiles the formula in its module.
+fn check_formula(
     repository: &Repository<'_>,
-    new: &mut Signature<'_>,
-    [(in_wesl, _), (in_glsl, _), ..]: &[(String, FileEdit); 6],
+    new: &Signature<'_>,
+    file: &str,
 ) -> Result<(), String> {
-    let Some(mut formula) = new.formula.take() else { return Ok(()) };
-    let path = [new.folder, new.module, new.name];
-    let old = repository.find(in_wesl);
+    let Some(formula) = &new.formula else { return Ok(()) };
     let arguments = new.list(|one| one.ty.plotted.to_owned());
-    let problem_of = |body: &str| -> Result<Option<String>, String> {
-        let text = wesl_with(old.as_deref(), new, body)?;
-        let written = (in_wesl.as_str(), text.as_str());
-        Ok(first_problem(repository.root, written, path, &arguments, Language::Wesl))
-    };
-    if let Some(problem) = problem_of(&formula.in_wesl())? {
-        return Err(format!(
-            "the formula does not compile: {problem}; it may call what `{in_wesl}` declares or imports"
-        ));
+    let text = wesl_with(repository.find(file).as_deref(), new, &formula.in_wesl())?;
+    let path = [new.folder, new.module, new.name];
+    match first_problem(repository.root, (file, &text), path, &arguments) {
+        None => Ok(()),
+        Some(problem) => Err(format!(
+            "the formula does not compile: {problem}; it may call what `{file}` declares or imports"
+        )),
     }
-    let result = new.result.wesl;
-    formula.find_types(|body| {
-        let body = format!("{body}    return {result}();\n");
-        problem_of(&body).is_ok_and(|problem| problem.is_none())
-    });
-    let arguments = new.list(|one| format!("{}(0)", one.ty.glsl));
-    let old = repository.find(in_glsl);
-    let translated = formula.in_glsl().and_then(|body| {
-        let text = glsl_with(old.as_deref(), new, &body)?;
-        let written = (in_glsl.as_str(), text.as_str());
-        match first_problem(repository.root, written, path, &arguments, Language::Glsl) {
-            Some(problem) => Err(problem),
-            None => Ok(()),
-        }
-    });
-    new.untranslated = translated.err();
-    new.formula = Some(formula);
-    Ok(())
 }
 
 fn steps(stem: &str, reference: &str, new: &Signature<'_>, is_new: bool) -> Vec<String> {
-    let Signature { folder, module, name, formula, untranslated, .. } = new;
+    let Signature { folder, module, name, formula, .. } = new;
     let path = format!("{folder}::{module}::{name}");
     let plain = match formula {
         Some(_) => "has the formula as it was given",
         None => "the published formula, without guards",
     };
-    let in_glsl = match (formula, untranslated) {
-        (Some(_), Some(problem)) => {
-            format!("the formula could not be translated ({problem}): write it; the same comment")
-        }
-        (Some(_), None) => "has the formula; the same comment and guards".to_owned(),
-        (None, _) => "the same comment and formula".to_owned(),
-    };
     let mut steps = vec![
         format!(
-            "{stem}.wesl: the formula, and each line of its comment (test shaderlib::); `Edges:` says, by the name of each parameter, what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states; for guards, `max(x, 1e-4)` with a bound that `Edges:` names, or from `super::super::math::safe` `safe_pow(x, e)` (1 for `e` = 0, else 0 for `x` at or below 0) and `safe_normalize(v, fallback)`, in GLSL with `#include \"../math/safe.glsl\"`; the module's first lines, if they list its functions"
+            "{stem}.wesl: the formula, and each line of its comment (test shaderlib::); `Edges:` says, by the name of each parameter, what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states; for guards, `max(x, 1e-4)` with a bound that `Edges:` names, or from `super::super::math::safe` `safe_pow(x, e)` (1 for `e` = 0, else 0 for `x` at or below 0) and `safe_normalize(v, fallback)`; the module's first lines, if they list its functions"
         ),
-        format!("{stem}.glsl: {in_glsl} (test shaderlib::)"),
+        format!("{stem}.glsl is translated from that: `cargo xtask docs` makes it again"),
         format!(
             "{reference}: the formula in f64, from the source and not from the shader, with the limits of guards as the shader has them (`f64::from(1e-4f32)`), and its first lines, which list the sources; then `cargo build`, since references are part of the command"
         ),
@@ -147,8 +115,6 @@ struct Signature<'n> {
     parameters: Vec<NewParameter<'n>>,
     result: Type,
     formula: Option<FormulaBody>,
-    /// Why GLSL does not have the formula.
-    untranslated: Option<String>,
 }
 
 impl Signature<'_> {
@@ -156,14 +122,6 @@ impl Signature<'_> {
     fn wesl_body(&self) -> String {
         let nothing = || format!("    return {}();\n", self.result.wesl);
         self.formula.as_ref().map_or_else(nothing, FormulaBody::in_wesl)
-    }
-
-    /// The body in GLSL.
-    fn glsl_body(&self) -> Result<String, String> {
-        match &self.formula {
-            Some(formula) if self.untranslated.is_none() => formula.in_glsl(),
-            _ => Ok(format!("    return {}(0);\n", self.result.glsl)),
-        }
     }
 
     /// `of` each parameter, joined by commas.
@@ -202,27 +160,6 @@ fn plain(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
     let parameters = new.list(|one| format!("{}: {}", one.name, one.ty.wesl));
     let (name, result, body) = (new.name, new.result.wesl, new.wesl_body());
     Ok(format!("{old}fn {name}({parameters}) -> {result} {{\n{body}}}\n"))
-}
-
-/// The include that gives names their prefix. Before the declarations it defines macros, after them
-/// it undefines these.
-const PREFIX: &str = "#ifdef LAMPLIGHT_PREFIX\n#include \"../prefix.glsl\"\n#endif\n";
-
-fn glsl(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
-    glsl_with(old, new, &new.glsl_body()?)
-}
-
-fn glsl_with(old: Option<&str>, new: &Signature<'_>, body: &str) -> Result<String, String> {
-    let (folder, module) = (new.folder.to_uppercase(), new.module.to_uppercase());
-    let guard = format!("LAMPLIGHT_{folder}_{module}_GLSL");
-    let end = format!("\n{PREFIX}\n#endif\n");
-    let fresh = format!("//!\n\n#ifndef {guard}\n#define {guard}\n\n{PREFIX}{end}");
-    let old = old.unwrap_or(&fresh);
-    refuse_known(old, &format!(" {}(", new.name))?;
-    let before = old.strip_suffix(&end).ok_or_else(|| format!("does not end with\n{end}"))?;
-    let parameters = new.list(|one| format!("{} {}", one.ty.glsl, one.name));
-    let (comment, name, result) = (new.comment(), new.name, new.result.glsl);
-    Ok(format!("{before}\n{comment}{result} {name}({parameters}) {{\n{body}}}\n{end}"))
 }
 
 /// The terms of a tolerance, each with a line of its own.

@@ -5,8 +5,6 @@
 pub struct Type {
     /// In WESL.
     pub wesl: &'static str,
-    /// In GLSL.
-    pub glsl: &'static str,
     /// The method that reads an argument of this type in the reference, which is in Rust.
     pub read: &'static str,
     /// The reference's placeholder for a result: a value that equals no other, such as NaN.
@@ -27,55 +25,34 @@ enum ParameterDomain {
     Fixed(&'static str),
 }
 
-const fn number(
-    wesl: &'static str,
-    glsl: &'static str,
-    plotted: &'static str,
-    domain: ParameterDomain,
-) -> Type {
+const fn number(wesl: &'static str, plotted: &'static str, domain: ParameterDomain) -> Type {
     let (read, nothing) = ("f64", "f64::NAN");
-    Type { wesl, glsl, read, nothing, number: "f32($)", plotted, domain }
+    Type { wesl, read, nothing, number: "f32($)", plotted, domain }
 }
 
 const fn vector(
-    names: [&'static str; 3],
+    names: [&'static str; 2],
     nothing: &'static str,
     plotted: &'static str,
     domain: &'static str,
 ) -> Type {
-    let [wesl, glsl, read] = names;
-    Type {
-        wesl,
-        glsl,
-        read,
-        nothing,
-        number: "$.x",
-        plotted,
-        domain: ParameterDomain::Fixed(domain),
-    }
+    let [wesl, read] = names;
+    Type { wesl, read, nothing, number: "$.x", plotted, domain: ParameterDomain::Fixed(domain) }
 }
 
 /// Every type that a new function may take or return.
 pub const TYPES: [Type; 9] = [
-    Type { number: "$", ..number("f32", "float", "0.5", ParameterDomain::Range) },
-    number("i32", "int", "1", ParameterDomain::Fixed("[-2, -1, 0, 1, 2]")),
-    number("u32", "uint", "1u", ParameterDomain::Fixed("[0, 1, 2, 3]")),
-    Type {
-        read: "bool",
-        ..number("bool", "bool", "true", ParameterDomain::Fixed("[false, true]"))
-    },
-    vector(["vec2f", "vec2", "vec2"], "glam::DVec2::NAN", "vec2f(0.6, 0.8)", "{ unit = 32 }"),
-    vector(["vec3f", "vec3", "vec3"], "glam::DVec3::NAN", "vec3f(0.0, 0.0, 1.0)", "{ unit = 32 }"),
-    vector(
-        ["vec4f", "vec4", "vec4"],
-        "glam::DVec4::NAN",
-        "vec4f(0.5)",
-        "{ grid = [0, 1], count = 3 }",
-    ),
+    Type { number: "$", ..number("f32", "0.5", ParameterDomain::Range) },
+    number("i32", "1", ParameterDomain::Fixed("[-2, -1, 0, 1, 2]")),
+    number("u32", "1u", ParameterDomain::Fixed("[0, 1, 2, 3]")),
+    Type { read: "bool", ..number("bool", "true", ParameterDomain::Fixed("[false, true]")) },
+    vector(["vec2f", "vec2"], "glam::DVec2::NAN", "vec2f(0.6, 0.8)", "{ unit = 32 }"),
+    vector(["vec3f", "vec3"], "glam::DVec3::NAN", "vec3f(0.0, 0.0, 1.0)", "{ unit = 32 }"),
+    vector(["vec4f", "vec4"], "glam::DVec4::NAN", "vec4f(0.5)", "{ grid = [0, 1], count = 3 }"),
     Type {
         number: "$[0].x",
         ..vector(
-            ["mat3x3f", "mat3", "mat3"],
+            ["mat3x3f", "mat3"],
             "glam::DMat3::NAN",
             "mat3x3f(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)",
             "{ random = [-1, 1], count = 16 }",
@@ -84,7 +61,7 @@ pub const TYPES: [Type; 9] = [
     Type {
         number: "$[0].x",
         ..vector(
-            ["mat4x4f", "mat4", "mat4"],
+            ["mat4x4f", "mat4"],
             "glam::DMat4::NAN",
             "mat4x4f(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)",
             "{ random = [-1, 1], count = 16 }",
