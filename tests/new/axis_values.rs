@@ -10,8 +10,8 @@ use crate::snapshot::root;
 /// Each line that tests the axis is told with its place. A sentence goes to the end of the
 /// description.
 pub fn is_told() -> Outcome {
-    let said = "`unheard_of` is new.";
-    let made = made::make(&root(), "axis-value", "forward::specular=unheard_of", &[said])?;
+    let sentence = "`unheard_of` is new.";
+    let made = made::make(&root(), "axis-value", "forward::specular=unheard_of", &[sentence])?;
     let (steps, files) = (made.next.join("\n"), made.files.into_iter().collect());
     let path = "shaderlib/programs/forward.wesl";
     for (number, line) in std::fs::read_to_string(root().join(path))?.lines().enumerate() {
