@@ -36,7 +36,7 @@ pub fn tests() -> Vec<Trial> {
         Trial::test("cost::bad_reports", offline::bad_reports),
         Trial::test("cost::more_lamps_cost_more", files::lamps),
         Trial::test("cost::guards_cost", files::guards),
-        Trial::test("cost::turns_of_unknown_loops", files::turns),
+        Trial::test("cost::iterations_of_unknown_loops", files::iterations),
         Trial::test("cost::modules_as_their_texts", files::modules),
         Trial::test("cost::foreign_modules", files::foreign_modules),
         Trial::test("cost::wrong_names", wrong_names),

@@ -95,7 +95,7 @@ pub fn run_variants(
             bar.clear();
             composed.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
         }
-        let meter = Meter { devices: &devices, cache: cache.as_ref(), turns: &[] };
+        let meter = Meter { devices: &devices, cache: cache.as_ref(), iterations: &[] };
         let changes = cost::axis_changes(&mut sources, &packages, &manifest, &program.name, meter)?;
         Ok(ProgramReport { report, changes })
     };

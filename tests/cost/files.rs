@@ -78,16 +78,16 @@ pub fn guards() -> Outcome {
 }
 
 /// A loop of unknown length counts once, is listed, and costs as much as the caller says.
-pub fn turns() -> Outcome {
+pub fn iterations() -> Outcome {
     let name = "shadow::compare::pcf_vogel";
-    let cycles = |turns: &[&str]| -> Result<(i64, i64), Failed> {
-        let found = objects(&[&[name, "--gpu", "navi21"], turns].concat())?;
+    let cycles = |iterations: &[&str]| -> Result<(i64, i64), Failed> {
+        let found = objects(&[&[name, "--gpu", "navi21"], iterations].concat())?;
         let object = found.first().ok_or("there are no figures")?;
         Ok((figure(object, "net", "cycles")?, figure(object, "net", "open_loops")?))
     };
     let (once, open) = cycles(&[])?;
-    let (again, _) = cycles(&["--turns", "1"])?;
-    let ((two, closed), (sixteen, _)) = (cycles(&["--turns", "2"])?, cycles(&["--turns", "16"])?);
+    let (again, _) = cycles(&["--iterations", "1"])?;
+    let ((two, closed), (sixteen, _)) = (cycles(&["--iterations", "2"])?, cycles(&["--iterations", "16"])?);
     let told = lamplight(&[name, "--gpu", "navi21"])?;
     let listed = String::from_utf8_lossy(&told.stdout).contains("Loops of unknown length");
     let one = two - once;
@@ -97,7 +97,7 @@ pub fn turns() -> Outcome {
         || sixteen - once != 15 * one
         || !listed
     {
-        let what = format!("{once}, {again}, {two}, {sixteen} cycles for once, 1, 2 and 16 turns");
+        let what = format!("{once}, {again}, {two}, {sixteen} cycles for once, 1, 2 and 16 iterations");
         return Err(format!("{what}; {open} and {closed} open loops, listed: {listed}").into());
     }
     Ok(())

@@ -109,25 +109,25 @@ const KIND: &str = "costs";
 pub fn known_figures(
     device: &Device,
     pipeline: &Pipeline,
-    turns: &[u32],
+    iterations: &[u32],
     cache: Option<&Cache>,
 ) -> Result<StageFigures, String> {
-    let Some(cache) = cache else { return device.measure(pipeline, turns) };
-    let key = figures_key(cache.build(), device, pipeline, turns);
+    let Some(cache) = cache else { return device.measure(pipeline, iterations) };
+    let key = figures_key(cache.build(), device, pipeline, iterations);
     let known = cache.get(KIND, key).and_then(|bytes| serde_json::from_slice(&bytes).ok());
     if let Some(known) = known {
         return Ok(known);
     }
-    let figures = device.measure(pipeline, turns)?;
+    let figures = device.measure(pipeline, iterations)?;
     cache.put(KIND, key, serde_json::to_vec(&figures).ok());
     Ok(figures)
 }
 
 /// A hash of all that figures depend on: the pipeline, the GPU, the driver, and how this crate
 /// asks.
-fn figures_key(build: &str, device: &Device, pipeline: &Pipeline, turns: &[u32]) -> Hash {
+fn figures_key(build: &str, device: &Device, pipeline: &Pipeline, iterations: &[u32]) -> Hash {
     let mut hasher = DigestHasher(blake3::Hasher::new());
-    (build, &device.driver, device.gpu.name, pipeline, turns).hash(&mut hasher);
+    (build, &device.driver, device.gpu.name, pipeline, iterations).hash(&mut hasher);
     shortened_hash(&hasher.0.finalize())
 }
 

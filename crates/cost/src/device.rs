@@ -115,7 +115,7 @@ impl Device {
         }
     }
 
-    /// Compiles a pipeline and gives the figures of each of its stages. `turns` says how often loops
+    /// Compiles a pipeline and gives the figures of each of its stages. `iterations` says how often loops
     /// run whose code does not say it, in the order of the code; the last number holds for all
     /// further ones, and without any each counts once.
     ///
@@ -125,17 +125,17 @@ impl Device {
     pub fn measure(
         &self,
         pipeline: &Pipeline,
-        turns: &[u32],
+        iterations: &[u32],
     ) -> Result<Vec<(Stage, Statistics)>, String> {
         let mut made = PipelineObjects::new(&self.device);
         let compiled = made.pipeline(pipeline).map_err(refusal_text)?;
-        self.figures(compiled, turns)
+        self.figures(compiled, iterations)
     }
 
     fn figures(
         &self,
         pipeline: vk::Pipeline,
-        turns: &[u32],
+        iterations: &[u32],
     ) -> Result<Vec<(Stage, Statistics)>, String> {
         let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
         // SAFETY: the pipeline was made by this device with its statistics captured.
@@ -154,7 +154,7 @@ impl Device {
             });
             let text = self.assembly(&info).map_err(refusal_text)?;
             let wave = executable.subgroup_size;
-            let counting = Counting { rates: self.gpu.rates, wave, turns };
+            let counting = Counting { rates: self.gpu.rates, wave, iterations };
             let counted = count_machine(&text, counting).map_err(|error| error.to_string())?;
             stages.push((stage, Statistics::of_stage(named, &counted, wave)));
         }

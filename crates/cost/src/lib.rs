@@ -120,7 +120,7 @@ pub struct Meter<'a> {
     /// What was measured before.
     pub cache: Option<&'a Cache>,
     /// How often loops run whose code does not say it, see [`Device::measure`].
-    pub turns: &'a [u32],
+    pub iterations: &'a [u32],
 }
 
 /// Measures every subject on every device, in their order. Equal pipelines are compiled once.
@@ -132,7 +132,7 @@ pub fn measure_subjects(
     subjects: &[CostSubject],
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Vec<Cost>, String> {
-    let Meter { devices, cache, turns } = meter;
+    let Meter { devices, cache, iterations } = meter;
     let distinct = Distinct::of(subjects);
     let jobs: Vec<(&Device, &Pipeline, &str)> = devices
         .iter()
@@ -140,7 +140,7 @@ pub fn measure_subjects(
         .collect();
     let (done, total) = (AtomicUsize::new(0), jobs.len());
     let one = |(device, pipeline, name): &(&Device, &Pipeline, &str)| {
-        let figures = baseline::known_figures(device, pipeline, turns, cache);
+        let figures = baseline::known_figures(device, pipeline, iterations, cache);
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
         figures.map_err(|reason| format!("`{name}` on {}: {reason}", device.gpu.name))
     };

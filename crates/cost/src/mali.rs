@@ -32,7 +32,7 @@ pub struct MaliVariant {
     /// If every instruction were executed once.
     pub total: Cycles,
     pub shortest: Cycles,
-    /// Unknown if the number of turns of a loop is.
+    /// Unknown if the number of iterations of a loop is.
     pub longest: Cycles,
     pub work_registers: Option<f64>,
     pub uniform_registers: Option<f64>,

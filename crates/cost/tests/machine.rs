@@ -24,8 +24,8 @@ pub fn tests() -> Vec<Trial> {
 const RDNA: Rates = Rates { conversion: 1, fused: 1 };
 const GCN: Rates = Rates { conversion: 4, fused: 4 };
 
-fn counting(turns: &[u32]) -> Counting<'_> {
-    Counting { rates: RDNA, wave: 64, turns }
+fn counting(iterations: &[u32]) -> Counting<'_> {
+    Counting { rates: RDNA, wave: 64, iterations }
 }
 
 /// The fewest and the most cycles of a unit.
@@ -75,19 +75,19 @@ fn counted_by_hand() -> Outcome {
             counting(&[]),
             &[(Vector, 33, 33), (Transcendental, 8, 8), (Local, 6, 6)],
         ),
-        // 16 turns: 15 + (6 + 16 * (1 + 19) + 1 + 2) + 1 + 4, x = (2 + 16 * 4 + 1).
+        // 16 iterations: 15 + (6 + 16 * (1 + 19) + 1 + 2) + 1 + 4, x = (2 + 16 * 4 + 1).
         (
             "pcf_vogel.navi21.txt",
             counting(&[16]),
             &[(Vector, 20, 349), (Transcendental, 0, 268), (Texture, 0, 16), (ScalarMemory, 0, 17)],
         ),
-        // 3 turns of 5: 11 + (5 + 3 * (1 + 1 + 5 * (1 + 11) + 1 + 1) + 1 + 4) + 1 + 3, x = (2 + 1).
+        // 3 iterations of 5: 11 + (5 + 3 * (1 + 1 + 5 * (1 + 11) + 1 + 1) + 1 + 4) + 1 + 3, x = (2 + 1).
         (
             "pcf_grid.navi21.txt",
             counting(&[3, 5]),
             &[(Vector, 15, 217), (Transcendental, 0, 12), (Texture, 0, 15)],
         ),
-        // 16 turns by the code: 27 + 9 + 3 + 12 + 16 * (20 + (9) + 2 + 8 + (3) + (11)) + 1, where a
+        // 16 iterations by the code: 27 + 9 + 3 + 12 + 16 * (20 + (9) + 2 + 8 + (3) + (11)) + 1, where a
         // shift of 64 bits counts twice; x = 1 + 2 + 1 + 16 * ((1) + 1 + (1)).
         (
             "contact_shadows.navi21.txt",
@@ -103,8 +103,8 @@ fn counted_by_hand() -> Outcome {
 
 /// Where the code does not say how often loops run, each counts once and is told.
 fn open_loops() -> Outcome {
-    let open = |name: &str, turns: &[u32]| -> Result<usize, Failed> {
-        Ok(count_machine(&recorded(name)?, counting(turns))?.open_loops())
+    let open = |name: &str, iterations: &[u32]| -> Result<usize, Failed> {
+        Ok(count_machine(&recorded(name)?, counting(iterations))?.open_loops())
     };
     let found = [
         open("pcf_grid.navi21.txt", &[])?,

@@ -288,7 +288,7 @@ fn as_all_paths() -> Outcome {
         let text = random_text(seed);
         let Ok(paths) = all_paths(&text) else { continue };
         let rates = Rates { conversion: 1, fused: 1 };
-        let found = count_machine(&text, Counting { rates, wave: 64, turns: &[] });
+        let found = count_machine(&text, Counting { rates, wave: 64, iterations: &[] });
         let found = found.map_err(|error| format!("seed {seed}: {error}\n{text}"))?;
         for (index, unit) in [Unit::Cycles, Unit::Texture, Unit::Scalar].into_iter().enumerate() {
             let sums = || paths.iter().map(|sums| sums[index]);

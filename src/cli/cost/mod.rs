@@ -89,7 +89,7 @@ pub struct Arguments {
     /// How often loops run whose machine code does not say it, in the order of the code; the last
     /// number holds for all further ones [default: they count once, and are listed].
     #[arg(long, value_name = "N,...", value_delimiter = ',')]
-    turns: Vec<u32>,
+    iterations: Vec<u32>,
     /// Print the figures of whole stages, instead of those that the functions add.
     #[arg(long)]
     whole: bool,
@@ -170,7 +170,7 @@ pub fn run_cost(
     let cache = arguments.cached.open(arguments.manifest.as_deref())?;
     let subjects = subjects::requested_subjects(&arguments, form)?;
     let devices = opened.map_err(Failure::environment)?;
-    let meter = Meter { devices: &devices, cache: cache.as_ref(), turns: &arguments.turns };
+    let meter = Meter { devices: &devices, cache: cache.as_ref(), iterations: &arguments.iterations };
     let costs = measure_costs(meter, &subjects)?;
     let driver = devices.first().map_or("", |device| &device.driver);
     print_costs(&arguments, driver, &costs)?;
@@ -299,7 +299,7 @@ fn print_open_loops(costs: &[Cost]) -> Result<(), Failure> {
     let names: Vec<&str> = names.into_iter().collect();
     Ok(writeln!(
         stdout(),
-        "\nLoops of unknown length count once; `--turns` says how often they run: {}",
+        "\nLoops of unknown length count once; `--iterations` says how often they run: {}",
         names.join(", ")
     )?)
 }

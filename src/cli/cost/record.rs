@@ -37,7 +37,7 @@ pub fn record_costs(opened: OpenedGpus) -> Result<Costs, Failure> {
 
 /// A meter without a cache: costs that are recorded are always measured anew.
 fn uncached(devices: &[Device]) -> Meter<'_> {
-    Meter { devices, cache: None, turns: &[] }
+    Meter { devices, cache: None, iterations: &[] }
 }
 
 fn chip_of(device: &Device) -> Chip {

@@ -1,6 +1,6 @@
 //! What machine code executes: the cycles of each unit along the cheapest and the dearest path.
 //!
-//! `text -> blocks -> flow (loops) -> turns of each loop -> paths`
+//! `text -> blocks -> flow (loops) -> trip count of each loop -> paths`
 //!
 //! The text is the driver's disassembly. A cycle is the time in which a SIMD issues one vector
 //! instruction at full rate for 64 threads: 4 clock cycles on GCN, 2 on RDNA. So counts of waves of
@@ -10,13 +10,13 @@ mod flow;
 mod paths;
 mod repair;
 mod text;
-mod turns;
+mod trips;
 mod units;
 
 pub use units::{Rates, UNITS, Unit, Weights};
 
 use flow::Flow;
-use turns::Turns;
+use trips::TripCount;
 
 /// The cycles of each unit along paths through a stage.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -26,13 +26,13 @@ pub struct MachineCost {
     /// For each unit the path on which it has the most.
     pub most: Weights,
     /// Loops, in the order of the code.
-    pub loops: Vec<Turns>,
+    pub loops: Vec<TripCount>,
 }
 
 impl MachineCost {
     /// Loops of which neither the code nor the caller says how often they run. They count once.
     pub fn open_loops(&self) -> usize {
-        self.loops.iter().filter(|turns| **turns == Turns::Unknown).count()
+        self.loops.iter().filter(|count| **count == TripCount::Unknown).count()
     }
 }
 
@@ -80,7 +80,7 @@ pub struct Counting<'a> {
     pub wave: u32,
     /// How often loops run of which the code does not say it, in the order of the code. The last
     /// number holds for all further ones.
-    pub turns: &'a [u32],
+    pub iterations: &'a [u32],
 }
 
 /// Counts the machine code of a stage.
@@ -91,6 +91,6 @@ pub fn count_machine(text: &str, counting: Counting<'_>) -> Result<MachineCost, 
     let blocks = text::parse_blocks(text)?;
     let weights = units::weigh_blocks(&blocks, counting)?;
     let flow = Flow::of(&blocks)?;
-    let loops = turns::loop_turns(&blocks, &flow, counting.turns);
+    let loops = trips::trip_counts(&blocks, &flow, counting.iterations);
     paths::count_paths(&flow, &weights, loops)
 }

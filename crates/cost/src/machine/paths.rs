@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use super::flow::Flow;
-use super::turns::Turns;
+use super::trips::TripCount;
 use super::units::Weights;
 use super::{MachineCost, MachineError};
 
@@ -52,7 +52,7 @@ struct Region {
 pub fn count_paths(
     flow: &Flow,
     weights: &[Weights],
-    loops: Vec<Turns>,
+    loops: Vec<TripCount>,
 ) -> Result<MachineCost, MachineError> {
     let whole = Walk { flow, weights, loops: &loops }.region(None);
     let Range { least, most } = whole.end.ok_or(MachineError::NoEnd)?;
@@ -62,7 +62,7 @@ pub fn count_paths(
 struct Walk<'a> {
     flow: &'a Flow,
     weights: &'a [Weights],
-    loops: &'a [Turns],
+    loops: &'a [TripCount],
 }
 
 impl Walk<'_> {
@@ -83,7 +83,7 @@ impl Walk<'_> {
             let inner = flow.loop_of[block]
                 .filter(|inner| Some(*inner) != of && flow.loops[*inner].header == block);
             if let Some(inner) = inner {
-                for ((from, to), range) in self.turned(inner) {
+                for ((from, to), range) in self.iterated(inner) {
                     self.arrive(of, &mut region, &mut arrivals, from, to, either.plus(range));
                 }
                 continue;
@@ -128,17 +128,17 @@ impl Walk<'_> {
         }
     }
 
-    /// The paths through all turns of a loop to each of its exits.
-    fn turned(&self, inner: usize) -> BTreeMap<(usize, Arrival), Range> {
+    /// The paths through all iterations of a loop to each of its exits.
+    fn iterated(&self, inner: usize) -> BTreeMap<(usize, Arrival), Range> {
         let once = self.region(Some(inner));
         let around = once.around.unwrap_or(Range::NOTHING);
-        let turned = |from: usize, range: Range| {
-            let (least, most) = self.loops[inner].turns_to(self.flow, from)?;
-            let turns = Range { least: around.least.times(least), most: around.most.times(most) };
-            Some(turns.plus(range))
+        let iterated = |from: usize, range: Range| {
+            let (least, most) = self.loops[inner].trips_to(self.flow, from)?;
+            let trips = Range { least: around.least.times(least), most: around.most.times(most) };
+            Some(trips.plus(range))
         };
         let exits = once.exits.into_iter();
-        exits.filter_map(|((from, to), range)| Some(((from, to), turned(from, range)?))).collect()
+        exits.filter_map(|((from, to), range)| Some(((from, to), iterated(from, range)?))).collect()
     }
 }
 

@@ -1,55 +1,55 @@
 //! How often loops run, as far as the code says it.
 //!
-//! A counter is a register that begins at a constant, is changed by a constant once in each turn,
+//! A counter is a register that begins at a constant, is changed by a constant once in each trip,
 //! and is compared with a limit where the loop is left. The limit is a constant, or a number that
 //! is at most a constant: the compiler keeps `min(count, MAX_LIGHTS)`. Everything else is unknown.
 
 use super::flow::{Flow, Loop};
 use super::text::{Block, Comparison, Instruction, constant_of};
 
-/// Turns beyond which a loop counts as one of unknown length.
-const MOST_TURNS: u64 = 1 << 20;
+/// TripCount beyond which a loop counts as one of unknown length.
+const MOST_TRIPS: u64 = 1 << 20;
 
 /// How often a loop is gone round, from its header to its header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Turns {
+pub enum TripCount {
     /// Exactly so often, if it is left where the counter is tested.
-    Exactly { turns: u64, exit: usize },
+    Exactly { trips: u64, exit: usize },
     /// At most so often; the counter is tested in this block.
-    AtMost { turns: u64, exit: usize },
+    AtMost { trips: u64, exit: usize },
     /// As often as the caller says.
     Given(u64),
     /// Not known: counted once.
     Unknown,
 }
 
-impl Turns {
-    /// The fewest and the most turns before the loop is left from a block. Nothing where it cannot
+impl TripCount {
+    /// The fewest and the most trips before the loop is left from a block. Nothing where it cannot
     /// be left from there, since the counter ends it before.
-    pub(super) fn turns_to(self, flow: &Flow, from: usize) -> Option<(u64, u64)> {
+    pub(super) fn trips_to(self, flow: &Flow, from: usize) -> Option<(u64, u64)> {
         match self {
-            Self::Exactly { turns, exit } if exit == from => Some((turns, turns)),
+            Self::Exactly { trips, exit } if exit == from => Some((trips, trips)),
             // What is behind the test is reached once less.
-            Self::Exactly { turns, exit } | Self::AtMost { turns, exit }
+            Self::Exactly { trips, exit } | Self::AtMost { trips, exit }
                 if exit != from && flow.dominates(exit, from) =>
             {
-                Some((0, turns.checked_sub(1)?))
+                Some((0, trips.checked_sub(1)?))
             }
-            Self::Exactly { turns, .. } | Self::AtMost { turns, .. } => Some((0, turns)),
-            Self::Given(turns) => Some((turns, turns)),
+            Self::Exactly { trips, .. } | Self::AtMost { trips, .. } => Some((0, trips)),
+            Self::Given(trips) => Some((trips, trips)),
             Self::Unknown => Some((1, 1)),
         }
     }
 }
 
-/// The turns of each loop. `given` has those of unknown loops, in the order of the code.
-pub fn loop_turns(blocks: &[Block], flow: &Flow, given: &[u32]) -> Vec<Turns> {
+/// The trips of each loop. `given` has those of unknown loops, in the order of the code.
+pub fn trip_counts(blocks: &[Block], flow: &Flow, given: &[u32]) -> Vec<TripCount> {
     let mut unknown = 0;
-    let mut one = |index: usize| match (Counters { blocks, flow, index }).turns() {
-        Turns::Unknown => {
-            let turns = given.get(unknown).or(given.last());
+    let mut one = |index: usize| match (Counters { blocks, flow, index }).trips() {
+        TripCount::Unknown => {
+            let trips = given.get(unknown).or(given.last());
             unknown += 1;
-            turns.map_or(Turns::Unknown, |turns| Turns::Given(u64::from(*turns)))
+            trips.map_or(TripCount::Unknown, |trips| TripCount::Given(u64::from(*trips)))
         }
         known => known,
     };
@@ -88,15 +88,15 @@ impl<'a> Counters<'a> {
         &self.flow.loops[self.index]
     }
 
-    fn turns(&self) -> Turns {
+    fn trips(&self) -> TripCount {
         let exits: Vec<usize> =
             self.this().body.iter().copied().filter(|block| self.leaves(*block)).collect();
-        let counted = exits.iter().filter_map(|exit| Some((*exit, self.exit_turns(*exit)?)));
-        let fewest = counted.min_by_key(|(_, (turns, is_exact))| (*turns, !is_exact));
+        let counted = exits.iter().filter_map(|exit| Some((*exit, self.exit_trips(*exit)?)));
+        let fewest = counted.min_by_key(|(_, (trips, is_exact))| (*trips, !is_exact));
         match fewest {
-            Some((exit, (turns, true))) => Turns::Exactly { turns, exit },
-            Some((exit, (turns, false))) => Turns::AtMost { turns, exit },
-            None => Turns::Unknown,
+            Some((exit, (trips, true))) => TripCount::Exactly { trips, exit },
+            Some((exit, (trips, false))) => TripCount::AtMost { trips, exit },
+            None => TripCount::Unknown,
         }
     }
 
@@ -104,8 +104,8 @@ impl<'a> Counters<'a> {
         self.flow.edges[block].iter().any(|edge| !self.this().body.contains(&edge.to))
     }
 
-    /// The turns before the exit of a block is taken, and whether that is exact.
-    fn exit_turns(&self, exit: usize) -> Option<(u64, bool)> {
+    /// The trips before the exit of a block is taken, and whether that is exact.
+    fn exit_trips(&self, exit: usize) -> Option<(u64, bool)> {
         let test = self.test_of(exit)?;
         // The counter may stand on either side.
         let sides = [(test.left, test.right, false), (test.right, test.left, true)];
@@ -117,10 +117,10 @@ impl<'a> Counters<'a> {
                     if *is_swapped { [limit.most, value] } else { [value, limit.most] };
                 test.comparison.holds(left, right) != test.is_inverted
             };
-            let turns = (0..MOST_TURNS).find(|turn| holds(first + step * (*turn as i64)))?;
+            let trips = (0..MOST_TRIPS).find(|trip| holds(first + step * (*trip as i64)))?;
             // A lower limit must end the loop no later. That holds for a counter that rises.
             let is_certain = limit.is_exact || step > 0 && self.ends_sooner(&test, *is_swapped);
-            is_certain.then_some((turns, limit.is_exact))
+            is_certain.then_some((trips, limit.is_exact))
         })
     }
 
@@ -134,7 +134,7 @@ impl<'a> Counters<'a> {
         leaves(102) && !leaves(98)
     }
 
-    /// The comparison that decides whether a block leaves the loop, if it runs once in each turn.
+    /// The comparison that decides whether a block leaves the loop, if it runs once in each trip.
     fn test_of(&self, exit: usize) -> Option<Test<'a>> {
         let is_each_turn = self.latches().all(|latch| self.flow.dominates(exit, latch));
         let block: &'a Block = self.blocks.get(exit).filter(|_| is_each_turn)?;
@@ -189,7 +189,7 @@ impl<'a> Counters<'a> {
         sources.filter(|source| found.body.contains(source))
     }
 
-    /// The value of a counter at the first test, and its change in each turn.
+    /// The value of a counter at the first test, and its change in each trip.
     fn counter(&self, register: &str, test: Place) -> Option<(i64, i64)> {
         let changes: Vec<Place> =
             self.places_in(register, |block| self.this().body.contains(&block));
@@ -205,7 +205,7 @@ impl<'a> Counters<'a> {
             true => change.1 < test.1,
             false => self.flow.dominates(change.0, test.0),
         };
-        // If the change is neither before the test nor behind it in each turn, it is not known.
+        // If the change is neither before the test nor behind it in each trip, it is not known.
         let is_behind = change.0 == test.0 || self.flow.dominates(test.0, change.0);
         match (is_before, is_behind) {
             (true, _) => Some((first + step, step)),
@@ -260,7 +260,7 @@ impl<'a> Counters<'a> {
             return Some(*same);
         }
         // Code is laid out so that what is run later stands further down, except in a loop around:
-        // there, a write behind the place comes before it in the next turn.
+        // there, a write behind the place comes before it in the next trip.
         let around = |block: usize| {
             let up = |at: &usize| self.flow.loops[*at].parent;
             let loops: Vec<usize> = std::iter::successors(self.flow.loop_of[block], up).collect();
@@ -273,7 +273,7 @@ impl<'a> Counters<'a> {
         }
         let place = writes.iter().rev().find(|place| place.0 < at.0).copied()?;
         let inside = around(place.0);
-        // A loop around both comes by the write in each turn. One around the place alone must not
+        // A loop around both comes by the write in each trip. One around the place alone must not
         // write.
         let is_fresh = outer.iter().filter(|index| !inside.contains(index)).all(|index| {
             writes.iter().all(|write| !self.flow.loops[*index].body.contains(&write.0))
