@@ -19,22 +19,17 @@ pub struct Gpu {
     pub rates: Rates,
 }
 
-/// GCN converts at a quarter of the rate; its small chips have no fast fused instructions.
-const GCN: Rates = Rates { conversion: 4, fused: 4 };
-const GCN_5: Rates = Rates { conversion: 4, fused: 1 };
-const RDNA: Rates = Rates { conversion: 1, fused: 1 };
-
 /// Every GPU, oldest first.
 pub const GPUS: &[Gpu] = &[
-    make_gpu("fiji", "GCN 3", "Radeon R9 Fury", false, GCN),
-    make_gpu("polaris10", "GCN 4", "Radeon RX 480", true, GCN),
-    make_gpu("vega10", "GCN 5", "Radeon RX Vega 64", true, GCN_5),
-    make_gpu("raven", "GCN 5", "Ryzen 5 2400G", false, GCN_5),
-    make_gpu("navi10", "RDNA 1", "Radeon RX 5700", true, RDNA),
-    make_gpu("navi21", "RDNA 2", "Radeon RX 6800", true, RDNA),
-    make_gpu("navi24", "RDNA 2", "Radeon RX 6500 XT", false, RDNA),
-    make_gpu("vangogh", "RDNA 2", "Steam Deck", false, RDNA),
-    make_gpu("gfx1100", "RDNA 3", "Radeon RX 7900 XTX", true, RDNA),
+    make_gpu("fiji", "GCN 3", "Radeon R9 Fury", false, Rates::GCN),
+    make_gpu("polaris10", "GCN 4", "Radeon RX 480", true, Rates::GCN),
+    make_gpu("vega10", "GCN 5", "Radeon RX Vega 64", true, Rates::GCN_5),
+    make_gpu("raven", "GCN 5", "Ryzen 5 2400G", false, Rates::GCN_5),
+    make_gpu("navi10", "RDNA 1", "Radeon RX 5700", true, Rates::RDNA),
+    make_gpu("navi21", "RDNA 2", "Radeon RX 6800", true, Rates::RDNA),
+    make_gpu("navi24", "RDNA 2", "Radeon RX 6500 XT", false, Rates::RDNA),
+    make_gpu("vangogh", "RDNA 2", "Steam Deck", false, Rates::RDNA),
+    make_gpu("gfx1100", "RDNA 3", "Radeon RX 7900 XTX", true, Rates::RDNA),
 ];
 
 const fn make_gpu(

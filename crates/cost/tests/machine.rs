@@ -18,14 +18,13 @@ pub fn tests() -> Vec<Trial> {
         Trial::test("machine::lost_instructions", lost_instructions),
         Trial::test("machine::refused_texts", refused_texts),
         Trial::test("machine::limits_of_loops", limits_of_loops),
+        Trial::test("machine::limits_of_threads", limits_of_threads),
+        Trial::test("machine::tested_at_the_end", tested_at_the_end),
     ]
 }
 
-const RDNA: Rates = Rates { conversion: 1, fused: 1 };
-const GCN: Rates = Rates { conversion: 4, fused: 4 };
-
 fn counting(iterations: &[u32]) -> Counting<'_> {
-    Counting { rates: RDNA, wave: 64, iterations }
+    Counting { rates: Rates::RDNA, wave: 64, iterations }
 }
 
 /// The fewest and the most cycles of a unit.
@@ -66,7 +65,7 @@ fn counted_by_hand() -> Outcome {
         // A branch skips the first side: 15 + (9) + 3 + 8, x = (2).
         (
             "safe_normalize.polaris10.txt",
-            Counting { rates: GCN, ..counting(&[]) },
+            Counting { rates: Rates::GCN, ..counting(&[]) },
             &[(Cycles, 26, 43), (Vector, 26, 35), (Transcendental, 0, 8)],
         ),
         // 15 + 9 + 3 + 6, x = 2, and a parameter from local memory for each of six components.
@@ -117,33 +116,59 @@ fn open_loops() -> Outcome {
     }
 }
 
-/// Twice as many waves of half the threads are needed. A dual instruction issues once.
+/// RDNA has 32 lanes: a wave of 32 threads takes one clock cycle for a vector instruction, and one of
+/// 64 threads two (AMD, "RDNA Architecture" white paper, 2019, "Compute unit architecture"). So for 64
+/// threads, vector instructions take as long in two waves as in one. What is done once for a wave is
+/// done twice. A dual instruction issues once.
 fn waves_of_32_threads() -> Outcome {
     let text = "BB0:\n\tv_add_f32_e32 v0, v1, v2\n\
                 \tv_dual_mul_f32 v0, v1, v2 :: v_dual_add_f32 v3, v4, v5\n\
-                \tv_pk_add_f16 v1, v2, v3\n\ts_endpgm\n";
-    expect("64", text, counting(&[]), &[(Unit::Vector, 3, 3)])?;
-    expect("32", text, Counting { wave: 32, ..counting(&[]) }, &[(Unit::Vector, 6, 6)])
+                \tv_pk_add_f16 v1, v2, v3\n\tv_rcp_f32_e32 v0, v0\n\
+                \ts_lshl_b32 s0, s0, 1\n\ts_load_dword s0, s[2:3], null\n\
+                \timage_sample_lz v1, [v0, v4], s[8:15], s[4:7] dmask:0x1\n\
+                \texp mrt0 v0, v0, v0, v0 done vm\n\ts_endpgm\n";
+    let each = |once: i64| {
+        [
+            (Unit::Vector, 3, 3),
+            (Unit::Transcendental, 4, 4),
+            (Unit::Texture, 1, 1),
+            (Unit::Scalar, once, once),
+            (Unit::ScalarMemory, once, once),
+            (Unit::Export, once, once),
+        ]
+    };
+    expect("64", text, counting(&[]), &each(1))?;
+    expect("32", text, Counting { wave: 32, ..counting(&[]) }, &each(2))
 }
 
+/// Cycles, and those in which an instruction issues: by `get_perf_info` in Mesa 22.3's
+/// `aco_statistics.cpp`, which counts clock cycles, four of which are one here on GCN.
 fn rates() -> Outcome {
     let cases = [
-        ("v_rcp_f32_e32 v0, v1", 4, 4),
-        ("v_exp_f32_e64 v0, -v1", 4, 4),
-        ("v_mul_lo_u32 v0, v1, v2", 4, 4),
-        ("v_cvt_f32_u32_e32 v0, v1", 1, 4),
-        ("v_fma_f32 v0, v1, v2, v3", 1, 4),
-        ("v_mad_f32 v0, v1, v2, v3", 1, 1),
-        ("v_add_f64 v[0:1], v[2:3], v[4:5]", 16, 16),
-        ("v_cmp_lt_f32_e32 vcc, v0, v1", 1, 1),
-        ("s_waitcnt vmcnt(0)", 0, 0),
-        ("v_add_f32_e32 v0, v1, v2\n\t(then repeated 2 times)", 3, 3),
+        ("v_rcp_f32_e32 v0, v1", (4, 1), (4, 4)),
+        ("v_exp_f32_e64 v0, -v1", (4, 1), (4, 4)),
+        ("v_rcp_f64_e32 v[0:1], v[2:3]", (16, 16), (16, 16)),
+        ("v_mul_lo_u32 v0, v1, v2", (4, 4), (4, 4)),
+        ("v_mul_hi_u32 v0, v1, v2", (4, 4), (4, 4)),
+        ("v_mul_hi_u32_u24_e32 v0, v1, v2", (1, 1), (1, 1)),
+        ("v_cvt_f32_u32_e32 v0, v1", (1, 1), (4, 4)),
+        ("v_fma_f32 v0, v1, v2, v3", (1, 1), (4, 4)),
+        ("v_mad_f32 v0, v1, v2, v3", (1, 1), (1, 1)),
+        ("v_add_f64 v[0:1], v[2:3], v[4:5]", (16, 16), (8, 8)),
+        ("v_mul_f64 v[0:1], v[2:3], v[4:5]", (16, 16), (16, 16)),
+        ("v_cvt_f32_f64_e32 v0, v[2:3]", (16, 16), (4, 4)),
+        ("v_cvt_f64_u32_e32 v[0:1], v2", (16, 16), (4, 4)),
+        ("v_lshlrev_b64 v[0:1], v2, v[4:5]", (2, 2), (2, 2)),
+        ("v_cmp_lt_f32_e32 vcc, v0, v1", (1, 1), (1, 1)),
+        ("s_waitcnt vmcnt(0)", (0, 0), (0, 0)),
+        ("v_add_f32_e32 v0, v1, v2\n\t(then repeated 2 times)", (3, 3), (3, 3)),
     ];
     for (instruction, rdna, gcn) in cases {
         let text = format!("BB0:\n\t{instruction}\n\ts_endpgm\n");
-        expect(instruction, &text, counting(&[]), &[(Unit::Cycles, rdna, rdna)])?;
-        let slow = Counting { rates: GCN, ..counting(&[]) };
-        expect(instruction, &text, slow, &[(Unit::Cycles, gcn, gcn)])?;
+        for (rates, (cycles, issue)) in [(Rates::RDNA, rdna), (Rates::GCN, gcn)] {
+            let wanted = [(Unit::Cycles, cycles, cycles), (Unit::Issue, issue, issue)];
+            expect(instruction, &text, Counting { rates, ..counting(&[]) }, &wanted)?;
+        }
     }
     Ok(())
 }
@@ -249,6 +274,21 @@ fn limits_of_loops() -> Outcome {
         ("0", "s_min_u32 s1, s9, 4", "s_cmp_le_u32 s1, s0", "s_add_u32 s0, s0, 1", (0, 4, 0)),
         ("2", "s_min_u32 s1, s9, 1", "s_cmp_ge_u32 s0, s1", "s_add_u32 s0, s0, 1", (0, 0, 0)),
         ("0", "s_mov_b32 s1, 3", "s_cmp_ge_u32 s0, s1", "s_add_u32 s0, s0, 1", (3, 3, 0)),
+        // Constants of 16 bits have a sign, and a counter has 32 bits.
+        ("4", "s_nop 0", "s_cmpk_lt_i32 s0, 0xffff", "s_addk_i32 s0, 0xffff", (6, 6, 0)),
+        ("0x7ffffffe", "s_nop 0", "s_cmp_lt_i32 s0, 0", "s_add_u32 s0, s0, 1", (2, 2, 0)),
+        // At most 4 as a signed number may be a large one without a sign.
+        ("0", "s_min_i32 s1, s9, 4", "s_cmp_ge_u32 s0, s1", "s_add_u32 s0, s0, 1", (1, 1, 1)),
+        ("0", "s_min_i32 s1, s9, 4", "s_cmp_ge_i32 s0, s1", "s_add_u32 s0, s0, 1", (0, 4, 0)),
+        ("0", "s_min_u32 s1, s9, 4", "s_cmp_ge_i32 s0, s1", "s_add_u32 s0, s0, 1", (0, 4, 0)),
+        ("0", "s_min_u32 s1, s9, -1", "s_cmp_ge_i32 s0, s1", "s_add_u32 s0, s0, 1", (1, 1, 1)),
+        (
+            "0",
+            "s_max_i32 s1, s9, 0\n\ts_min_i32 s1, s1, 4",
+            "s_cmp_ge_u32 s0, s1",
+            "s_add_u32 s0, s0, 1",
+            (0, 4, 0),
+        ),
         // The limit is not known, or a lower one might be stepped over.
         ("0", "s_max_u32 s1, s9, 4", "s_cmp_ge_u32 s0, s1", "s_add_u32 s0, s0, 1", (1, 1, 1)),
         ("0", "s_min_u32 s1, s9, 4", "s_cmp_eq_u32 s0, s1", "s_add_u32 s0, s0, 2", (1, 1, 1)),
@@ -264,6 +304,97 @@ fn limits_of_loops() -> Outcome {
         if found != open {
             return Err(format!("{text}: {found} loops of unknown length, expected {open}").into());
         }
+    }
+    Ok(())
+}
+
+/// A loop over a counter in a vector register, as the compiler writes it. `first` and `step` set and
+/// change it.
+fn threads_text(first: &str, step: &str) -> String {
+    format!(
+        "BB0:
+	{first}
+	s_mov_b64 s[0:1], exec
+BB1:
+	s_mov_b64 s[2:3], exec
+	v_cmpx_le_u32_e32 8, v1
+BB2:
+	s_andn2_b64 s[2:3], s[2:3], exec
+	s_cbranch_scc0 BB16
+BB9:
+	s_mov_b64 exec, s[2:3]
+	v_rcp_f32_e32 v0, v0
+	{step}
+	s_branch BB1
+BB16:
+	s_mov_b64 exec, s[0:1]
+	exp mrt0 v0, v0, v0, v0 done vm
+	s_endpgm
+"
+    )
+}
+
+/// A counter that each thread has for itself: what only some threads write says nothing of the others.
+fn limits_of_threads() -> Outcome {
+    let (set, step) = ("v_mov_b32_e32 v1, 0", "v_add_nc_u32_e32 v1, 1, v1");
+    let guarded = |lines: &str, end: &str| {
+        format!("s_mov_b64 s[8:9], exec\n\tv_cmpx_lt_f32_e32 0.5, v0\n\t{lines}\n\t{end}")
+    };
+    let restored = "s_mov_b64 exec, s[8:9]";
+    let swapped = format!("s_andn2_b64 exec, s[8:9], exec\n\t{set}\n\t{restored}");
+    let cases = [
+        (set.to_owned(), step.to_owned(), (8, 0)),
+        // Some threads are switched off before, and stay so, or a whole wave is on.
+        (format!("v_cmpx_lt_f32_e32 0.5, v0\n\t{set}"), step.to_owned(), (8, 0)),
+        (format!("{set}\n\tv_cmpx_lt_f32_e32 0.5, v0"), step.to_owned(), (8, 0)),
+        (format!("s_mov_b64 exec, -1\n\t{set}\n\ts_mov_b64 exec, s[6:7]"), step.to_owned(), (8, 0)),
+        (format!("{set}\n\ts_mov_b64 exec, s[6:7]"), step.to_owned(), (1, 1)),
+        // Only some threads begin at 0.
+        (guarded(set, restored), step.to_owned(), (1, 1)),
+        (guarded("v_mov_b32_e32 v1, 7", &swapped), step.to_owned(), (1, 1)),
+        // Only some threads step on, or all that stay do.
+        (set.to_owned(), guarded(step, restored), (1, 1)),
+        (set.to_owned(), guarded("s_nop 0", step), (8, 0)),
+        // The second half of a dual instruction changes the counter.
+        (
+            set.to_owned(),
+            format!("{step}\n\tv_dual_mov_b32 v5, v6 :: v_dual_mov_b32 v1, v7"),
+            (1, 1),
+        ),
+    ];
+    for (first, step, (times, open)) in cases {
+        let text = threads_text(&first, &step);
+        let found = count_machine(&text, counting(&[]))?;
+        let (roots, unknown) = (found.most.of(Unit::Transcendental), found.open_loops());
+        if (roots, unknown) != (4 * times, open) {
+            let what = format!("{roots} cycles, {unknown} loops of unknown length");
+            return Err(format!("{text}: {what}, expected {} and {open}", 4 * times).into());
+        }
+    }
+    // Some threads begin at 7 and some at 0: 3 + (8 + 6 x) + 1 + (1 + 3 + 2 x) + 1.
+    let wanted = [(Unit::Vector, 9, 17), (Unit::Transcendental, 8, 32)];
+    expect("start", &recorded("divergent_start.navi21.txt")?, counting(&[]), &wanted)?;
+    // A thread steps on only where it takes the second side.
+    let found = count_machine(&recorded("divergent_step.navi21.txt")?, counting(&[]))?;
+    let bounds = count_machine(&recorded("divergent_limit.polaris10.txt")?, counting(&[]))?;
+    match (found.open_loops(), bounds.open_loops()) {
+        (1, 1) => Ok(()),
+        open => Err(format!("{open:?} loops of unknown length, expected 1 in both").into()),
+    }
+}
+
+/// Where the test is behind the work, a loop of N iterations does the work N times: a sine, another,
+/// and a root.
+fn tested_at_the_end() -> Outcome {
+    let text = recorded("tested_at_the_end.navi21.txt")?;
+    for (iterations, times) in [(&[][..], 1), (&[1], 1), (&[2], 2), (&[16], 16)] {
+        // 2 + N * (3 + 3 x).
+        let (vector, transcendental) = (2 + 3 * times, 12 * times);
+        let wanted = [
+            (Unit::Vector, vector, vector),
+            (Unit::Transcendental, transcendental, transcendental),
+        ];
+        expect("at the end", &text, counting(iterations), &wanted)?;
     }
     Ok(())
 }

@@ -287,7 +287,7 @@ fn as_all_paths() -> Outcome {
     for seed in 1..=3000 {
         let text = random_text(seed);
         let Ok(paths) = all_paths(&text) else { continue };
-        let rates = Rates { conversion: 1, fused: 1 };
+        let rates = Rates::RDNA;
         let found = count_machine(&text, Counting { rates, wave: 64, iterations: &[] });
         let found = found.map_err(|error| format!("seed {seed}: {error}\n{text}"))?;
         for (index, unit) in [Unit::Cycles, Unit::Texture, Unit::Scalar].into_iter().enumerate() {

@@ -3,11 +3,14 @@
 //! `text -> blocks -> flow (loops) -> trip count of each loop -> paths`
 //!
 //! The text is the driver's disassembly. A cycle is the time in which a SIMD issues one vector
-//! instruction at full rate for 64 threads: 4 clock cycles on GCN, 2 on RDNA. So counts of waves of
-//! 32 and of 64 threads can be compared. Waiting, caches and the overlap of units are not counted.
+//! instruction at full rate for 64 threads: 4 clock cycles on GCN, 2 on RDNA, where two waves of 32
+//! threads take as long as one of 64. So counts of both can be compared. Waiting, caches and the overlap of units are not counted.
 
 mod flow;
+mod interval;
+mod masks;
 mod paths;
+mod registers;
 mod repair;
 mod text;
 mod trips;
@@ -91,6 +94,6 @@ pub fn count_machine(text: &str, counting: Counting<'_>) -> Result<MachineCost, 
     let blocks = text::parse_blocks(text)?;
     let weights = units::weigh_blocks(&blocks, counting)?;
     let flow = Flow::of(&blocks)?;
-    let loops = trips::trip_counts(&blocks, &flow, counting.iterations);
+    let loops = trips::trip_counts(&blocks, &flow, counting.wave, counting.iterations);
     paths::count_paths(&flow, &weights, loops)
 }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use super::flow::Flow;
 use super::trips::TripCount;
-use super::units::Weights;
+use super::units::{UNITS, Weights};
 use super::{MachineCost, MachineError};
 
 /// The least and the most of each unit over some paths.
@@ -20,7 +20,8 @@ struct Range {
 }
 
 impl Range {
-    const NOTHING: Self = Self { least: Weights([0; 9]), most: Weights([0; 9]) };
+    const NOTHING: Self =
+        Self { least: Weights([0; UNITS.len()]), most: Weights([0; UNITS.len()]) };
 
     fn plus(self, other: Self) -> Self {
         Self { least: self.least.plus(other.least), most: self.most.plus(other.most) }
@@ -133,7 +134,8 @@ impl Walk<'_> {
         let once = self.region(Some(inner));
         let around = once.around.unwrap_or(Range::NOTHING);
         let iterated = |from: usize, range: Range| {
-            let (least, most) = self.loops[inner].trips_to(self.flow, from)?;
+            let is_behind = range.most.total().saturating_mul(2) > around.most.total();
+            let (least, most) = self.loops[inner].trips_to(self.flow, from, is_behind)?;
             let trips = Range { least: around.least.times(least), most: around.most.times(most) };
             Some(trips.plus(range))
         };

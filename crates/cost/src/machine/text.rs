@@ -225,6 +225,10 @@ impl Comparison {
         Some(Self { relation, is_signed })
     }
 
+    pub fn is_signed(self) -> bool {
+        self.is_signed
+    }
+
     pub fn holds(self, left: i64, right: i64) -> bool {
         let order = match self.is_signed {
             true => left.cmp(&right),

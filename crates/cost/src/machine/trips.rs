@@ -1,13 +1,18 @@
 //! How often loops run, as far as the code says it.
 //!
-//! A counter is a register that begins at a constant, is changed by a constant once in each trip,
+//! A counter is a register that begins at a constant, is changed by a constant once in each iteration,
 //! and is compared with a limit where the loop is left. The limit is a constant, or a number that
-//! is at most a constant: the compiler keeps `min(count, MAX_LIGHTS)`. Everything else is unknown.
+//! is at most a constant: the compiler keeps `min(count, MAX_LIGHTS)`. A vector register has a value
+//! for each thread: what is known of it must hold for all threads in the loop. Everything else is
+//! unknown.
 
 use super::flow::{Flow, Loop};
-use super::text::{Block, Comparison, Instruction, constant_of};
+use super::interval::{Interval, immediate_of};
+use super::masks::Masks;
+use super::registers::{Registers, written_registers};
+use super::text::{Block, Comparison, Instruction};
 
-/// TripCount beyond which a loop counts as one of unknown length.
+/// Iterations beyond which a loop counts as one of unknown length.
 const MOST_TRIPS: u64 = 1 << 20;
 
 /// How often a loop is gone round, from its header to its header.
@@ -17,16 +22,19 @@ pub enum TripCount {
     Exactly { trips: u64, exit: usize },
     /// At most so often; the counter is tested in this block.
     AtMost { trips: u64, exit: usize },
-    /// As often as the caller says.
+    /// The part before an exit, or the one behind it, whichever has more to do, runs so often, as the
+    /// caller says.
     Given(u64),
-    /// Not known: counted once.
+    /// Not known: the same, once.
     Unknown,
 }
 
 impl TripCount {
     /// The fewest and the most trips before the loop is left from a block. Nothing where it cannot
-    /// be left from there, since the counter ends it before.
-    pub(super) fn trips_to(self, flow: &Flow, from: usize) -> Option<(u64, u64)> {
+    /// be left from there, since the counter ends it before. `is_behind` says whether most of an
+    /// iteration is over where it is left: this part runs once more than the loop is gone round.
+    pub(super) fn trips_to(self, flow: &Flow, from: usize, is_behind: bool) -> Option<(u64, u64)> {
+        let all = |count: u64| count.saturating_sub(u64::from(is_behind));
         match self {
             Self::Exactly { trips, exit } if exit == from => Some((trips, trips)),
             // What is behind the test is reached once less.
@@ -36,39 +44,45 @@ impl TripCount {
                 Some((0, trips.checked_sub(1)?))
             }
             Self::Exactly { trips, .. } | Self::AtMost { trips, .. } => Some((0, trips)),
-            Self::Given(trips) => Some((trips, trips)),
-            Self::Unknown => Some((1, 1)),
+            Self::Given(count) => Some((all(count), all(count))),
+            Self::Unknown => Some((all(1), all(1))),
         }
     }
 }
 
-/// The trips of each loop. `given` has those of unknown loops, in the order of the code.
-pub fn trip_counts(blocks: &[Block], flow: &Flow, given: &[u32]) -> Vec<TripCount> {
+/// The trips of each loop, in waves of so many threads. `given` has those of unknown loops, in the
+/// order of the code.
+pub fn trip_counts(blocks: &[Block], flow: &Flow, wave: u32, given: &[u32]) -> Vec<TripCount> {
+    if flow.loops.is_empty() {
+        return Vec::new();
+    }
+    let masks = Masks::of(blocks, flow, wave);
     let mut unknown = 0;
-    let mut one = |index: usize| match (Counters { blocks, flow, index }).trips() {
-        TripCount::Unknown => {
-            let trips = given.get(unknown).or(given.last());
-            unknown += 1;
-            trips.map_or(TripCount::Unknown, |trips| TripCount::Given(u64::from(*trips)))
+    let mut one = |index: usize| {
+        let counters = Counters { blocks, flow, masks: &masks, wave, index };
+        match counters.trips() {
+            TripCount::Unknown => {
+                let count = given.get(unknown).or(given.last());
+                unknown += 1;
+                count.map_or(TripCount::Unknown, |count| TripCount::Given(u64::from(*count)))
+            }
+            known => known,
         }
-        known => known,
     };
     (0..flow.loops.len()).map(&mut one).collect()
-}
-
-/// A number that a register holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Bound {
-    most: i64,
-    is_exact: bool,
 }
 
 /// Where an instruction stands: its block, and its index there.
 type Place = (usize, usize);
 
+/// How many instructions are followed back to find what a register holds.
+const DEPTH: usize = 8;
+
 struct Counters<'a> {
     blocks: &'a [Block],
     flow: &'a Flow,
+    masks: &'a Masks<'a>,
+    wave: u32,
     /// The loop.
     index: usize,
 }
@@ -78,9 +92,24 @@ struct Test<'a> {
     comparison: Comparison,
     /// Whether the loop is left where the comparison does not hold.
     is_inverted: bool,
+    name: &'a str,
     left: &'a str,
     right: &'a str,
     at: Place,
+}
+
+impl Test<'_> {
+    /// Whether the loop is left with these numbers on the sides of the counter and of the limit.
+    fn leaves(&self, counter: i64, limit: i64, is_swapped: bool) -> bool {
+        let [left, right] = if is_swapped { [limit, counter] } else { [counter, limit] };
+        self.comparison.holds(left, right) != self.is_inverted
+    }
+
+    /// Whether a smaller limit ends the loop no later: the exit is `counter >= limit` or the like,
+    /// which a limit and two counters around it show.
+    fn ends_sooner(&self, is_swapped: bool) -> bool {
+        self.leaves(102, 100, is_swapped) && !self.leaves(98, 100, is_swapped)
+    }
 }
 
 impl<'a> Counters<'a> {
@@ -111,33 +140,25 @@ impl<'a> Counters<'a> {
         let sides = [(test.left, test.right, false), (test.right, test.left, true)];
         sides.iter().find_map(|(counter, limit, is_swapped)| {
             let (first, step) = self.counter(counter, test.at)?;
-            let limit = self.bound(limit, test.at, 8)?;
-            let holds = |value: i64| {
-                let [left, right] =
-                    if *is_swapped { [limit.most, value] } else { [value, limit.most] };
-                test.comparison.holds(left, right) != test.is_inverted
-            };
-            let trips = (0..MOST_TRIPS).find(|trip| holds(first + step * (*trip as i64)))?;
-            // A lower limit must end the loop no later. That holds for a counter that rises.
-            let is_certain = limit.is_exact || step > 0 && self.ends_sooner(&test, *is_swapped);
-            is_certain.then_some((trips, limit.is_exact))
+            let limit = self.interval(test.name, limit, test.at, DEPTH)?;
+            // An unsigned comparison takes a negative number for a large one.
+            let is_ordered = limit.is_exact() || test.comparison.is_signed() || limit.least >= 0;
+            let is_certain = limit.is_exact() || test.ends_sooner(*is_swapped);
+            if !is_ordered || !is_certain {
+                return None;
+            }
+            // The register has 32 bits.
+            let value = |trip: u64| i64::from((first + step * (trip as i64)) as i32);
+            let leaves = |trip: &u64| test.leaves(value(*trip), limit.most, *is_swapped);
+            Some(((0..MOST_TRIPS).find(leaves)?, limit.is_exact()))
         })
     }
 
-    /// Whether a smaller limit ends a rising counter's loop no later: the exit is `counter >= limit`
-    /// or the like, which some limit and two counters around it show.
-    fn ends_sooner(&self, test: &Test<'_>, is_swapped: bool) -> bool {
-        let leaves = |counter: i64| {
-            let [left, right] = if is_swapped { [100, counter] } else { [counter, 100] };
-            test.comparison.holds(left, right) != test.is_inverted
-        };
-        leaves(102) && !leaves(98)
-    }
-
-    /// The comparison that decides whether a block leaves the loop, if it runs once in each trip.
+    /// The comparison that decides whether a block leaves the loop, if it runs once in each
+    /// iteration.
     fn test_of(&self, exit: usize) -> Option<Test<'a>> {
-        let is_each_turn = self.latches().all(|latch| self.flow.dominates(exit, latch));
-        let block: &'a Block = self.blocks.get(exit).filter(|_| is_each_turn)?;
+        let is_each_time = self.latches().all(|latch| self.flow.dominates(exit, latch));
+        let block: &'a Block = self.blocks.get(exit).filter(|_| is_each_time)?;
         let (branch, before) = block.instructions.split_last()?;
         let taken = self.flow.edges[exit].first()?;
         let leaves_if_taken = !self.this().body.contains(&taken.to);
@@ -151,7 +172,8 @@ impl<'a> Counters<'a> {
             let comparison = Comparison::parse(name)?;
             let is_inverted = leaves_if_taken != on_one;
             let (left, right) = (last.operand(0), last.operand(1));
-            return Some(Test { comparison, is_inverted, left, right, at: (exit, index) });
+            let name = &last.name;
+            return Some(Test { comparison, is_inverted, name, left, right, at: (exit, index) });
         }
         // The threads for which the comparison holds leave, and the wave leaves with the last.
         let is_rest = last.name.starts_with("s_andn2_b") || last.name.starts_with("s_and_not1_b");
@@ -161,7 +183,8 @@ impl<'a> Counters<'a> {
         self.thread_test(exit, index)
     }
 
-    /// A comparison of threads that precedes a place: in its block, or in the only one before.
+    /// A comparison of threads that precedes a place, in its block or in the only one before, if
+    /// every thread in the loop is compared and those that do not leave go on.
     fn thread_test(&self, block: usize, index: usize) -> Option<Test<'a>> {
         let found = |block: usize, end: usize| {
             let instructions: &'a [Instruction] = &self.blocks[block].instructions;
@@ -173,13 +196,27 @@ impl<'a> Counters<'a> {
             found(only, self.blocks[only].instructions.len())
         };
         let at = found(block, index).or_else(before)?;
-        if !self.this().body.contains(&at.0) {
-            return None;
-        }
         let compare: &'a Instruction = &self.blocks[at.0].instructions[at.1];
+        let staying = self.blocks[block].instructions[index].operand(1);
+        let staying = self.masks.held(block, index, Registers::parse(staying)?)?;
+        let (compared, leaving) =
+            (self.masks.active(at.0, at.1)?, self.masks.active(at.0, at.1 + 1)?);
+        let is_whole = compared.contains(&staying)
+            && self.masks.active(block, index)? == leaving
+            && self.this().body.contains(&at.0)
+            && self.is_of_all(at);
         let comparison = Comparison::parse(compare.name.strip_prefix("v_cmpx_")?)?;
         let [.., left, right] = &compare.operands[..] else { return None };
-        Some(Test { comparison, is_inverted: false, left, right, at })
+        let name = &compare.name;
+        is_whole.then_some(Test { comparison, is_inverted: false, name, left, right, at })
+    }
+
+    /// Whether all threads that go round again are active at a place in the loop.
+    fn is_of_all(&self, at: Place) -> bool {
+        let Some(active) = self.masks.active(at.0, at.1) else { return false };
+        self.latches().all(|latch| {
+            self.masks.active_at_end(latch).is_some_and(|staying| active.contains(&staying))
+        })
     }
 
     /// Blocks from which the loop begins anew.
@@ -189,23 +226,27 @@ impl<'a> Counters<'a> {
         sources.filter(|source| found.body.contains(source))
     }
 
-    /// The value of a counter at the first test, and its change in each trip.
+    /// The value of a counter at the first test, and its change in each iteration.
     fn counter(&self, register: &str, test: Place) -> Option<(i64, i64)> {
+        let register = Registers::parse(register)?;
         let changes: Vec<Place> =
             self.places_in(register, |block| self.this().body.contains(&block));
         let [change] = changes[..] else { return None };
         let is_once = self.flow.loop_of[change.0] == Some(self.index)
-            && self.latches().all(|latch| self.flow.dominates(change.0, latch));
+            && self.latches().all(|latch| self.flow.dominates(change.0, latch))
+            && (!register.is_vector() || self.is_of_all(change));
         if !is_once {
             return None;
         }
         let step = step_of(&self.blocks[change.0].instructions[change.1], register)?;
-        let first = self.value_before(register)?;
+        let header = (self.this().header, 0);
+        let first = self.value_of(self.last_before(register, header)?, DEPTH)?;
+        let first = first.is_exact().then_some(first.most)?;
         let is_before = match change.0 == test.0 {
             true => change.1 < test.1,
             false => self.flow.dominates(change.0, test.0),
         };
-        // If the change is neither before the test nor behind it in each trip, it is not known.
+        // If the change is neither before the test nor behind it in each iteration, it is not known.
         let is_behind = change.0 == test.0 || self.flow.dominates(test.0, change.0);
         match (is_before, is_behind) {
             (true, _) => Some((first + step, step)),
@@ -214,53 +255,43 @@ impl<'a> Counters<'a> {
         }
     }
 
-    /// The constant that a register holds where the loop is entered.
-    fn value_before(&self, register: &str) -> Option<i64> {
-        let place = self.last_before(register, (self.this().header, 0))?;
-        let bound = self.bound_of_instruction(place, 8)?;
-        bound.is_exact.then_some(bound.most)
-    }
-
-    /// What is known of an operand at a place.
-    fn bound(&self, operand: &str, at: Place, depth: usize) -> Option<Bound> {
-        if let Some(value) = constant_of(operand) {
-            return Some(Bound { most: value, is_exact: true });
+    /// What is known of an operand of an instruction at a place.
+    fn interval(&self, name: &str, operand: &str, at: Place, depth: usize) -> Option<Interval> {
+        if let Some(value) = immediate_of(name, operand) {
+            return Some(Interval::exactly(value));
         }
-        let place = self.last_before(operand, at)?;
-        self.bound_of_instruction(place, depth.checked_sub(1)?)
+        let place = self.last_before(Registers::parse(operand)?, at)?;
+        self.value_of(place, depth.checked_sub(1)?)
     }
 
-    fn bound_of_instruction(&self, place: Place, depth: usize) -> Option<Bound> {
+    /// What is known of the number that an instruction writes.
+    fn value_of(&self, place: Place, depth: usize) -> Option<Interval> {
         let instruction = &self.blocks[place.0].instructions[place.1];
-        let operand = |index: usize| self.bound(instruction.operand(index), place, depth);
-        let at_most = |most: i64| Some(Bound { most, is_exact: false });
-        match instruction.name.as_str() {
-            "s_mov_b32" | "s_movk_i32" | "v_mov_b32" => operand(1),
-            "s_min_u32" | "s_min_i32" | "v_min_u32" | "v_min_i32" => {
-                let known = [1, 2].into_iter().filter_map(operand).map(|bound| bound.most);
-                at_most(known.min()?)
-            }
-            // The middle of three is at most the greater of two.
-            "v_med3_i32" | "v_med3_u32" => {
-                let known = [1, 2, 3].into_iter().filter_map(operand);
-                let mut known: Vec<i64> = known.map(|bound| bound.most).collect();
-                known.sort_unstable();
-                at_most(*known.get(1)?)
-            }
-            "s_cselect_b32" => at_most(operand(1)?.most.max(operand(2)?.most)),
-            _ => None,
-        }
+        let name = instruction.name.as_str();
+        Interval::written(name, |index| {
+            self.interval(name, instruction.operand(index), place, depth)
+        })
     }
 
-    /// The last place that writes a register before another place, if every path comes by there.
-    fn last_before(&self, register: &str, at: Place) -> Option<Place> {
+    /// The last place that writes a register before another place, if every path comes by there. A
+    /// vector register must be written there for all threads that are active at the other place.
+    fn last_before(&self, register: Registers, at: Place) -> Option<Place> {
+        let place = self.last_write(register, at)?;
+        let is_whole = || {
+            let written = self.masks.active(place.0, place.1)?;
+            Some(written.contains(&self.masks.active(at.0, at.1)?))
+        };
+        (!register.is_vector() || is_whole()?).then_some(place)
+    }
+
+    fn last_write(&self, register: Registers, at: Place) -> Option<Place> {
         let writes = self.places_in(register, |_| true);
         let same = writes.iter().rev().find(|place| place.0 == at.0 && place.1 < at.1);
         if let Some(same) = same {
             return Some(*same);
         }
         // Code is laid out so that what is run later stands further down, except in a loop around:
-        // there, a write behind the place comes before it in the next trip.
+        // there, a write behind the place comes before it in the next iteration.
         let around = |block: usize| {
             let up = |at: &usize| self.flow.loops[*at].parent;
             let loops: Vec<usize> = std::iter::successors(self.flow.loop_of[block], up).collect();
@@ -273,8 +304,8 @@ impl<'a> Counters<'a> {
         }
         let place = writes.iter().rev().find(|place| place.0 < at.0).copied()?;
         let inside = around(place.0);
-        // A loop around both comes by the write in each trip. One around the place alone must not
-        // write.
+        // A loop around both comes by the write in each iteration. One around the place alone must
+        // not write.
         let is_fresh = outer.iter().filter(|index| !inside.contains(index)).all(|index| {
             writes.iter().all(|write| !self.flow.loops[*index].body.contains(&write.0))
         });
@@ -282,12 +313,16 @@ impl<'a> Counters<'a> {
     }
 
     /// Where a register is written, in the order of the code.
-    fn places_in(&self, register: &str, wanted: impl Fn(usize) -> bool) -> Vec<Place> {
+    fn places_in(&self, register: Registers, wanted: impl Fn(usize) -> bool) -> Vec<Place> {
         let blocks = self.blocks.iter().enumerate().filter(|(block, _)| wanted(*block));
+        let writes = |instruction: &Instruction| {
+            let written = written_registers(instruction, self.wave);
+            written.into_iter().any(|written| written.overlap(register))
+        };
         let places = blocks.flat_map(|(block, found)| {
-            let writes = found.instructions.iter().enumerate();
-            let writes = writes.filter(|(_, instruction)| writes_register(instruction, register));
-            writes.map(move |(index, _)| (block, index))
+            let instructions = found.instructions.iter().enumerate();
+            let written = instructions.filter(|(_, instruction)| writes(instruction));
+            written.map(move |(index, _)| (block, index))
         });
         places.collect()
     }
@@ -316,7 +351,11 @@ const KEEP_FLAG: [&str; 9] = [
 ];
 
 /// The change of a register by an instruction that adds a constant to it.
-fn step_of(instruction: &Instruction, register: &str) -> Option<i64> {
+fn step_of(instruction: &Instruction, register: Registers) -> Option<i64> {
+    let name = instruction.name.as_str();
+    let is_it = |operand: &str| Registers::parse(operand) == Some(register);
+    let constant = |operand: &str| immediate_of(name, operand);
+    // Without the carry.
     let sources: Vec<&str> = instruction
         .operands
         .iter()
@@ -324,90 +363,21 @@ fn step_of(instruction: &Instruction, register: &str) -> Option<i64> {
         .map(String::as_str)
         .filter(|operand| !operand.starts_with("vcc") && !operand.contains('['))
         .collect();
-    let other = |sources: &[&str]| match sources {
-        [left, right] if *left == register => constant_of(right),
-        [left, right] if *right == register => constant_of(left),
+    match (name, &sources[..]) {
+        (
+            "s_add_u32" | "s_add_i32" | "v_add_nc_u32" | "v_add_u32" | "v_add_nc_i32",
+            [left, right],
+        ) => match (is_it(left), is_it(right)) {
+            (true, false) => constant(right),
+            (false, true) => constant(left),
+            _ => None,
+        },
+        ("s_addk_i32", [step]) => constant(step),
+        ("s_sub_u32" | "s_sub_i32" | "v_sub_nc_u32" | "v_sub_u32", [left, right])
+            if is_it(left) =>
+        {
+            constant(right).map(|step| -step)
+        }
         _ => None,
-    };
-    match instruction.name.as_str() {
-        "s_add_u32" | "s_add_i32" | "v_add_nc_u32" | "v_add_u32" | "v_add_nc_i32" => {
-            other(&sources)
-        }
-        "s_addk_i32" => constant_of(sources.first()?),
-        "s_sub_u32" | "s_sub_i32" | "v_sub_nc_u32" if sources.first() == Some(&register) => {
-            other(&sources).map(|step| -step)
-        }
-        _ => None,
-    }
-}
-
-/// Instructions that write none of their operands, by the beginning of the name.
-const WRITE_NOTHING: &[&str] = &[
-    "s_cmp",
-    "s_bitcmp",
-    "s_cbranch",
-    "s_branch",
-    "s_waitcnt",
-    "s_nop",
-    "exp",
-    "buffer_store",
-    "ds_write",
-    "ds_store",
-    "image_store",
-    "global_store",
-    "s_setreg",
-    "s_sendmsg",
-    "scratch_store",
-    "tbuffer_store",
-    "s_clause",
-    "s_setprio",
-    "s_endpgm",
-];
-
-/// Whether an instruction writes a register.
-fn writes_register(instruction: &Instruction, register: &str) -> bool {
-    // Most instructions do not even name the register where they write.
-    let named = instruction.operands.iter().take(2);
-    if !named.into_iter().any(|operand| contains_register(operand, register)) {
-        return false;
-    }
-    let name = instruction.name.as_str();
-    if WRITE_NOTHING.iter().any(|start| name.starts_with(start)) {
-        return false;
-    }
-    // On RDNA, a comparison that sets the active threads has no register for its result.
-    let is_bare = name.starts_with("v_cmpx_") && instruction.operands.len() < 3;
-    // The second operand of an addition may be its carry.
-    let has_carry = name.starts_with("v_add") || name.starts_with("v_sub") || name == "v_swap_b32";
-    let count = if is_bare {
-        0
-    } else if has_carry {
-        2
-    } else {
-        1
-    };
-    let written = instruction.operands.iter().take(count).enumerate();
-    written.into_iter().any(|(index, operand)| {
-        let is_sum = index == 1 && name != "v_swap_b32" && !operand.contains('[');
-        !is_sum && contains_register(operand, register)
-    })
-}
-
-/// Whether an operand such as `s[4:7]` contains a register such as `s5`.
-fn contains_register(operand: &str, register: &str) -> bool {
-    if operand == register {
-        return true;
-    }
-    let range = operand.split_once('[').and_then(|(kind, rest)| {
-        let (first, last) = rest.strip_suffix(']')?.split_once(':')?;
-        Some((kind, first.parse::<u32>().ok()?, last.parse::<u32>().ok()?))
-    });
-    let single = register.split_at_checked(1);
-    match (range, single) {
-        (Some((kind, first, last)), Some((of, number))) => {
-            let number = number.parse::<u32>();
-            kind == of && number.is_ok_and(|number| (first..=last).contains(&number))
-        }
-        _ => false,
     }
 }

@@ -8,8 +8,12 @@ use super::{Counting, MachineError};
 /// A unit of the GPU, or a sum of units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
-    /// All cycles in which vector instructions issue: the sum of the next two.
+    /// The cycles of all vector instructions, if none overlap: the sum of `Vector` and
+    /// `Transcendental`.
     Cycles,
+    /// The cycles in which vector instructions issue. On RDNA a transcendental one issues in one, and
+    /// its unit works while others issue.
+    Issue,
     /// Vector instructions except the transcendental ones.
     Vector,
     /// Roots, reciprocals, powers, logarithms, sines, at a quarter of the full rate.
@@ -29,8 +33,9 @@ pub enum Unit {
 }
 
 /// Every unit, in the order of [`Weights`].
-pub const UNITS: [Unit; 9] = [
+pub const UNITS: [Unit; 10] = [
     Unit::Cycles,
+    Unit::Issue,
     Unit::Vector,
     Unit::Transcendental,
     Unit::Scalar,
@@ -54,6 +59,13 @@ impl Weights {
         Self(std::array::from_fn(|index| combine(self.0[index], other.0[index])))
     }
 
+    /// All cycles, one after the other.
+    pub(super) fn total(self) -> i64 {
+        let parts = [Unit::Vector, Unit::Transcendental, Unit::Issue];
+        let units = UNITS.into_iter().filter(|unit| !parts.contains(unit));
+        units.fold(0, |sum, unit| sum.saturating_add(self.of(unit)))
+    }
+
     pub(super) fn plus(self, other: Self) -> Self {
         self.with(other, i64::saturating_add)
     }
@@ -71,6 +83,31 @@ pub struct Rates {
     pub conversion: i64,
     /// Cycles of a fused multiplication and addition: 4 on the small chips of GCN.
     pub fused: i64,
+    /// Cycles in which a transcendental instruction keeps others from issuing: 4 on GCN, 1 on RDNA.
+    pub transcendental_issue: i64,
+    /// Cycles of a sum in double precision: 8 on GCN, 16 on RDNA.
+    pub double_sum: i64,
+    /// Cycles of a conversion to or from double precision: 4 on GCN, 16 on RDNA.
+    pub double_conversion: i64,
+}
+
+impl Rates {
+    /// GCN converts at a quarter of the rate; its small chips have no fast fused instructions.
+    pub const GCN: Self = Self {
+        conversion: 4,
+        fused: 4,
+        transcendental_issue: 4,
+        double_sum: 8,
+        double_conversion: 4,
+    };
+    pub const GCN_5: Self = Self { fused: 1, ..Self::GCN };
+    pub const RDNA: Self = Self {
+        conversion: 1,
+        fused: 1,
+        transcendental_issue: 1,
+        double_sum: 16,
+        double_conversion: 16,
+    };
 }
 
 /// What a kind of instruction does with a unit.
@@ -80,7 +117,10 @@ enum Kind {
     Vector(i64),
     Conversion,
     Fused,
-    Transcendental(i64),
+    Transcendental,
+    DoubleTranscendental,
+    DoubleSum,
+    DoubleConversion,
     /// One instruction of a unit.
     One(Unit),
     /// Nothing but waiting, hints and the end.
@@ -89,8 +129,9 @@ enum Kind {
 
 /// Kinds by the beginning of the name. The longest one that fits counts.
 ///
-/// The rates are those of AMD's manuals of the instruction sets, section "VALU", and of the
-/// estimates in Mesa's `aco_statistics.cpp`.
+/// The rates are those of AMD's manuals of the instruction sets, section "VALU", and of
+/// `get_perf_info` in `src/amd/compiler/aco_statistics.cpp` of Mesa 22.3, whose numbers are clock
+/// cycles: on GCN four, for waves of 64 threads, on RDNA one, for waves of 32.
 const KINDS: &[(&[&str], Kind)] = &[
     (
         &["s_waitcnt", "s_wait_", "s_nop", "s_endpgm", "s_code_end", "s_clause", "s_sleep"],
@@ -112,21 +153,24 @@ const KINDS: &[(&[&str], Kind)] = &[
     (&["v_cvt_pk", "v_cvt_pkrtz"], Kind::Vector(1)),
     (&["v_cvt_"], Kind::Conversion),
     (&["v_fma_f32", "v_fmac_f32", "v_fmamk_f32", "v_fmaak_f32"], Kind::Fused),
-    (&["v_rcp_", "v_rsq_", "v_sqrt_", "v_exp_", "v_log_"], Kind::Transcendental(4)),
-    (&["v_sin_", "v_cos_"], Kind::Transcendental(4)),
-    (&["v_rcp_f64", "v_rsq_f64", "v_sqrt_f64"], Kind::Transcendental(16)),
+    (&["v_rcp_", "v_rsq_", "v_sqrt_", "v_exp_", "v_log_"], Kind::Transcendental),
+    (&["v_sin_", "v_cos_"], Kind::Transcendental),
+    (&["v_rcp_f64", "v_rsq_f64", "v_sqrt_f64"], Kind::DoubleTranscendental),
     // A quarter of the rate.
     (&["v_mul_lo_u32", "v_mul_lo_i32", "v_mul_hi_u32", "v_mul_hi_i32"], Kind::Vector(4)),
+    // But not of factors of 24 bits.
+    (&["v_mul_hi_u32_u24", "v_mul_hi_i32_i24"], Kind::Vector(1)),
     (&["v_mad_u64_u32", "v_mad_i64_i32"], Kind::Vector(4)),
     // Half of the rate.
     (&["v_lshlrev_b64", "v_lshrrev_b64", "v_ashrrev_i64"], Kind::Vector(2)),
     (&["v_lshl_b64", "v_lshr_b64", "v_ashr_i64"], Kind::Vector(2)),
     // Double precision, as on the cards for games.
-    (&["v_add_f64", "v_mul_f64", "v_fma_f64", "v_min_f64", "v_max_f64"], Kind::Vector(16)),
+    (&["v_add_f64"], Kind::DoubleSum),
+    (&["v_mul_f64", "v_fma_f64", "v_min_f64", "v_max_f64"], Kind::Vector(16)),
     (&["v_ldexp_f64", "v_fract_f64", "v_trunc_f64", "v_floor_f64"], Kind::Vector(16)),
     (&["v_ceil_f64", "v_rndne_f64", "v_div_fixup_f64", "v_div_fmas_f64"], Kind::Vector(16)),
-    (&["v_div_scale_f64", "v_cvt_f64_", "v_cvt_f32_f64", "v_cvt_i32_f64"], Kind::Vector(16)),
-    (&["v_cvt_u32_f64", "v_frexp_mant_f64", "v_frexp_exp_i32_f64"], Kind::Vector(16)),
+    (&["v_div_scale_f64", "v_frexp_mant_f64", "v_frexp_exp_i32_f64"], Kind::Vector(16)),
+    (&["v_cvt_f64_", "v_cvt_f32_f64", "v_cvt_i32_f64", "v_cvt_u32_f64"], Kind::DoubleConversion),
 ];
 
 const SCALAR_MEMORY: Kind = Kind::One(Unit::ScalarMemory);
@@ -271,23 +315,36 @@ fn kind_of(name: &str) -> Option<Kind> {
     }
 }
 
-/// The cycles of an instruction.
-fn weigh_instruction(kind: Kind, times: i64, rates: Rates) -> Weights {
+/// The cycles of an instruction, for the waves of 64 threads.
+fn weigh_instruction(kind: Kind, times: i64, counting: Counting<'_>) -> Weights {
+    let Counting { rates, wave, .. } = counting;
     let mut weights = Weights::default();
     let mut add = |unit: Unit, cycles: i64| weights.0[unit as usize] += cycles;
-    let mut vector = |unit: Unit, cycles: i64| {
+    let mut vector = |unit: Unit, cycles: i64, issue: i64| {
         add(Unit::Cycles, cycles);
+        add(Unit::Issue, issue);
         add(unit, cycles);
     };
+    let mut plain = |cycles: i64| vector(Unit::Vector, cycles, cycles);
     match kind {
-        Kind::Vector(cycles) => vector(Unit::Vector, cycles),
-        Kind::Conversion => vector(Unit::Vector, rates.conversion),
-        Kind::Fused => vector(Unit::Vector, rates.fused),
-        Kind::Transcendental(cycles) => vector(Unit::Transcendental, cycles),
-        Kind::One(unit) => add(unit, 1),
+        Kind::Vector(cycles) => plain(cycles),
+        Kind::Conversion => plain(rates.conversion),
+        Kind::Fused => plain(rates.fused),
+        Kind::DoubleSum => plain(rates.double_sum),
+        Kind::DoubleConversion => plain(rates.double_conversion),
+        Kind::Transcendental => vector(Unit::Transcendental, 4, rates.transcendental_issue),
+        Kind::DoubleTranscendental => vector(Unit::Transcendental, 16, 16),
+        Kind::One(unit) => add(unit, waves_of(unit, wave)),
         Kind::Idle => {}
     }
     weights.times(times.unsigned_abs())
+}
+
+/// How often a unit takes an instruction for 64 threads. Waves of 32 threads are twice as many: what a
+/// unit does once for a wave it does twice, but what it does for each thread takes half the time.
+fn waves_of(unit: Unit, wave: u32) -> i64 {
+    let is_of_waves = matches!(unit, Unit::Scalar | Unit::ScalarMemory | Unit::Export);
+    if is_of_waves { i64::from(64 / wave.clamp(1, 64)) } else { 1 }
 }
 
 /// The cycles of each block.
@@ -298,19 +355,17 @@ pub fn weigh_blocks<'b>(
     // A stage has thousands of instructions of some dozen names.
     let mut kinds: HashMap<&str, Option<Kind>> = HashMap::new();
     let mut unknown = BTreeSet::new();
-    // Twice as many waves of 32 threads are needed.
-    let waves = u64::from(64 / counting.wave.clamp(1, 64));
     let mut one = |block: &'b Block| {
         let mut sum = Weights::default();
         for Instruction { name, times, .. } in &block.instructions {
             match *kinds.entry(name).or_insert_with(|| kind_of(name)) {
-                Some(kind) => sum = sum.plus(weigh_instruction(kind, *times, counting.rates)),
+                Some(kind) => sum = sum.plus(weigh_instruction(kind, *times, counting)),
                 None => {
                     unknown.insert(name.clone());
                 }
             }
         }
-        sum.times(waves)
+        sum
     };
     let weights = blocks.iter().map(&mut one).collect();
     match unknown.is_empty() {
