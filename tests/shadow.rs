@@ -126,50 +126,50 @@ const GLSL: &str = "
 #include <lamplight/shadow/compare.glsl>
 #include <lamplight/shadow/moments.glsl>
 #include <lamplight/filter/gaussian.glsl>
-float lit(texture2D map, samplerShadow smp, mat4 m, vec3 p) {
-    return hard(map, smp, project(shadow_coord(m, p), 0.0));
+float lit(LAMPLIGHT_DEPTH_MAP(map, smp), mat4 m, vec3 p) {
+    return hard(LAMPLIGHT_DEPTH_ARG(map, smp), project(shadow_coord(m, p), 0.0));
 }
-float clip(texture2D map, samplerShadow smp, vec4 sc, float min_w) {
-    return hard(map, smp, project(sc, min_w));
+float clip(LAMPLIGHT_DEPTH_MAP(map, smp), vec4 sc, float min_w) {
+    return hard(LAMPLIGHT_DEPTH_ARG(map, smp), project(sc, min_w));
 }
-float stored(texture2D map, samplerShadow smp, vec2 uv, float depth) {
-    return compare_tap(map, smp, uv, depth);
+float stored(LAMPLIGHT_DEPTH_MAP(map, smp), vec2 uv, float depth) {
+    return compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), uv, depth);
 }
-float sloped(texture2D map, samplerShadow smp, vec2 uv, float depth, float n_dot_l, float b) {
-    return hard(map, smp, ShadowUv(uv, constant_bias(depth, slope_bias(n_dot_l, b, 1.0)), true));
+float sloped(LAMPLIGHT_DEPTH_MAP(map, smp), vec2 uv, float depth, float n_dot_l, float b) {
+    return hard(LAMPLIGHT_DEPTH_ARG(map, smp), ShadowUv(uv, constant_bias(depth, slope_bias(n_dot_l, b, 1.0)), true));
 }
-float raised(texture2D map, samplerShadow smp, mat4 m, vec3 p, vec3 n, vec3 l, float texel, float scale) {
-    return hard(map, smp, project(shadow_coord(m, normal_offset(p, n, l, texel, scale)), 0.0));
+float raised(LAMPLIGHT_DEPTH_MAP(map, smp), mat4 m, vec3 p, vec3 n, vec3 l, float texel, float scale) {
+    return hard(LAMPLIGHT_DEPTH_ARG(map, smp), project(shadow_coord(m, normal_offset(p, n, l, texel, scale)), 0.0));
 }
-float planar(texture2D map, samplerShadow smp, vec2 uv, float depth, vec2 duv_dx, vec2 duv_dy, vec2 dz, float share) {
+float planar(LAMPLIGHT_DEPTH_MAP(map, smp), vec2 uv, float depth, vec2 duv_dx, vec2 duv_dy, vec2 dz, float share) {
     vec2 slope = share * receiver_plane(duv_dx, duv_dy, dz);
     float sum = 0.0;
     for (int i = 0; i < 16; i++) {
         vec2 offset = 0.2 * vogel_disk(i, 16, 0.0);
-        sum += compare_tap(map, smp, uv + offset, depth + dot(slope, offset));
+        sum += compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), uv + offset, depth + dot(slope, offset));
     }
     return sum / 16.0;
 }
-float cube(textureCube map, samplerShadow smp, vec3 offset, float near, float far, float reversed) {
+float cube(LAMPLIGHT_DEPTH_CUBE(map, smp), vec3 offset, float near, float far, float reversed) {
     float depth = cube_depth(offset, near, far);
-    return cube_compare(map, smp, offset, mix(depth, 1.0 - depth, reversed));
+    return cube_compare(LAMPLIGHT_DEPTH_ARG(map, smp), offset, mix(depth, 1.0 - depth, reversed));
 }
-float[6] filters(texture2D map, samplerShadow smp, vec2 uv, float depth) {
+float[6] filters(LAMPLIGHT_DEPTH_MAP(map, smp), vec2 uv, float depth) {
     ShadowUv at = ShadowUv(uv, depth, true);
-    return float[6](hard(map, smp, at), pcf_3x3(map, smp, at), pcf_5x5(map, smp, at), pcf_castano_3(map, smp, at), pcf_castano_5(map, smp, at), pcf_vogel(map, smp, at, 16, 2.0, 0.0));
+    return float[6](hard(LAMPLIGHT_DEPTH_ARG(map, smp), at), pcf_3x3(LAMPLIGHT_DEPTH_ARG(map, smp), at), pcf_5x5(LAMPLIGHT_DEPTH_ARG(map, smp), at), pcf_castano_3(LAMPLIGHT_DEPTH_ARG(map, smp), at), pcf_castano_5(LAMPLIGHT_DEPTH_ARG(map, smp), at), pcf_vogel(LAMPLIGHT_DEPTH_ARG(map, smp), at, 16, 2.0, 0.0));
 }
-vec2 random(texture2D map, samplerShadow smp, vec4 sc, vec2 pixel) {
-    return vec2(pcf_random16(map, smp, project(sc, 0.0), 2.0, pixel), pcf_random16_hpg(map, smp, sc, 0.0, pixel));
+vec2 random(LAMPLIGHT_DEPTH_MAP(map, smp), vec4 sc, vec2 pixel) {
+    return vec2(pcf_random16(LAMPLIGHT_DEPTH_ARG(map, smp), project(sc, 0.0), 2.0, pixel), pcf_random16_hpg(LAMPLIGHT_DEPTH_ARG(map, smp), sc, 0.0, pixel));
 }
-float moments(texture2D map, sampler smp, vec2 uv, float t) {
-    return vsm_visibility(textureLod(sampler2D(map, smp), uv, 0.0).xy, t, 0.000001, 0.0, 0.0);
+float moments(LAMPLIGHT_COLOR_MAP(map, smp), vec2 uv, float t) {
+    return vsm_visibility(textureLod(LAMPLIGHT_COLOR_SAMPLER(map, smp), uv, 0.0).xy, t, 0.000001, 0.0, 0.0);
 }
-float warped(texture2D map, sampler smp, vec2 uv, float t) {
-    return evsm_visibility(textureLod(sampler2D(map, smp), uv, 0.0), t, vec2(5.0, 5.0), 0.000001, 0.0);
+float warped(LAMPLIGHT_COLOR_MAP(map, smp), vec2 uv, float t) {
+    return evsm_visibility(textureLod(LAMPLIGHT_COLOR_SAMPLER(map, smp), uv, 0.0), t, vec2(5.0, 5.0), 0.000001, 0.0);
 }
-float clip_moments(texture2D map, sampler smp, vec4 sc, float min_w) {
+float clip_moments(LAMPLIGHT_COLOR_MAP(map, smp), vec4 sc, float min_w) {
     ShadowUv at = project(sc, min_w);
-    return at.inside ? moments(map, smp, at.uv, at.depth) : 1.0;
+    return at.inside ? moments(LAMPLIGHT_COLOR_ARG(map, smp), at.uv, at.depth) : 1.0;
 }
 float weight(int i) {
     return gaussian21(i);

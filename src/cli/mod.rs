@@ -149,8 +149,8 @@ fn color_choice() -> clap::ColorChoice {
     }
 }
 
-/// The stack of the command line in bytes. That of the main thread is what the user's shell allows, which
-/// may be too little to read the arguments.
+/// The stack of the command line in bytes. That of the main thread is what the user's shell allows,
+/// which may be too little to read the arguments.
 const STACK: usize = 8 << 20;
 
 /// Runs the command line of this process.
@@ -185,8 +185,8 @@ fn run_arguments() -> ExitCode {
     }
 }
 
-/// Prints help, or what is wrong with the arguments. They are quoted and may contain anything, so they
-/// are escaped; help is not.
+/// Prints help, or what is wrong with the arguments. They are quoted and may contain anything, so
+/// they are escaped; help is not.
 fn print_usage(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
         return match error.print().and_then(|()| terminal::flush_stdout()) {

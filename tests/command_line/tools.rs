@@ -144,6 +144,9 @@ fn examples() -> Outcome {
     package.run("gen --no-cache")?.ends(0)?;
     std::fs::create_dir(package.path("old"))?;
     std::fs::write(package.path("old/light.wgsl"), "#ifdef A\nconst A = 1;\n#endif\n")?;
+    let lamp =
+        "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(1.0); }\n";
+    std::fs::write(package.path("lamp.frag"), lamp)?;
     let help = package.run("--help")?.ends(0)?.out;
     let commands: Vec<&str> = help
         .lines()

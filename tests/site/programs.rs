@@ -40,7 +40,7 @@ pub fn programs() -> Outcome {
     wait(&page, &format!("{outputs} !== {}", Value::from(written)))?;
     let shadowed = text(&page, PICTURE)?;
     let cost = "document.querySelector('[data-axis=shadow]').closest('label').textContent";
-    assert!(text(&page, cost)?.contains("instructions"), "the axis `shadow` says no cost");
+    assert!(text(&page, cost)?.contains("cycles"), "the axis `shadow` says no cost");
     wait(&page, "document.querySelectorAll('.lamp').length > 1")?;
     page.evaluate(
         "document.querySelector('.lamp').dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowDown' }))",

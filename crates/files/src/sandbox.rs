@@ -3,8 +3,8 @@
 //!
 //! Running out of stack or memory cannot be caught. [`crate::limits`] bound the input of such code.
 //! No input below a part of each bound was ever seen to exhaust anything. Input between that part
-//! and the bound goes through the *sandbox*: a child process with little memory and time does the same work,
-//! and if it crashes, its input is an error. Ordinary input never starts a process.
+//! and the bound goes through the *sandbox*: a child process with little memory and time does the
+//! same work, and if it crashes, its input is an error. Ordinary input never starts a process.
 //!
 //! As a library the crate never starts a process either: a program must say how with [`run_by`], as
 //! `lamplight` does.
@@ -58,8 +58,8 @@ pub fn run_by(runner: SandboxRunner) {
     let _ = RUNNER.set(runner);
 }
 
-/// Does a job in the sandbox, unless that was done before. Only one job runs at a time. Without a runner
-/// nothing happens.
+/// Does a job in the sandbox, unless that was done before. Only one job runs at a time. Without a
+/// runner nothing happens.
 ///
 /// # Errors
 /// What the job exhausted: it must not be done in this process.

@@ -1,7 +1,7 @@
 //! The gallery: every preset as a picture, with everything that it was made from.
 //!
-//! The gallery is a page of HTML beside large pictures and composed texts. The repository has another
-//! page, in Markdown, which shows the small pictures that the tests compare.
+//! The gallery is a page of HTML beside large pictures and composed texts. The repository has
+//! another page, in Markdown, which shows the small pictures that the tests compare.
 
 use crate::frame::{Programs, Stages};
 use crate::passes::prepare_passes;
@@ -37,9 +37,6 @@ pub struct Card {
     texts: Vec<Arc<str>>,
     /// The library's functions in them, by path.
     functions: Vec<String>,
-    /// A hash of everything that the picture is made from: settings, numbers, and the texts of all
-    /// passes.
-    fingerprint: String,
 }
 
 impl Exhibit {
@@ -72,18 +69,12 @@ impl Card {
         language: Language,
     ) -> Result<Self, Diagnostics> {
         let plan = Plan::of_preset(programs, preset, &[])?;
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(settings_text(preset).as_bytes());
-        hasher.update(geometry_text(&preset.scene).as_bytes());
-        let all = composed_texts(programs, &plan, language)?;
-        for text in all.concat() {
-            hasher.update(text.as_bytes());
-        }
-        let own = all.into_iter().next_back().unwrap_or_default();
         let last = plan.last().map(|pass| compiled_stages(programs, pass, language)).transpose()?;
-        let functions = last.map_or_else(Vec::new, |stages| named_functions(&stages));
-        let fingerprint = hasher.finalize().to_hex()[..16].to_owned();
-        Ok(Self { preset: preset.clone(), texts: own, functions, fingerprint })
+        Ok(Self {
+            preset: preset.clone(),
+            texts: last.as_ref().map_or_else(Vec::new, stage_texts),
+            functions: last.as_ref().map_or_else(Vec::new, named_functions),
+        })
     }
 
     /// Programs and keys of all passes, in order.
@@ -112,11 +103,6 @@ impl Card {
             let (module, name) = path.rsplit_once("::")?;
             Some((name, format!("{docs}/catalogue/{}.md#{name}", module.replace("::", "/"))))
         })
-    }
-
-    /// How the line of [`adapter_lines`] begins if the picture is up to date.
-    pub fn current(&self, shot: &Shot) -> String {
-        current_line(&picture_file(&self.preset.name), shot, &self.fingerprint)
     }
 }
 
@@ -152,7 +138,8 @@ impl StripCard {
 
     /// How the line of `adapters.txt` begins if the picture is up to date.
     pub fn current(&self, shot: &Shot) -> String {
-        current_line(&strip_file(&self.comparison.name), shot, &self.fingerprint)
+        let file = strip_file(&self.comparison.name);
+        format!("{}, of {}", shot_words(&file, shot), self.fingerprint)
     }
 
     /// The command that draws it.
@@ -166,9 +153,10 @@ pub fn strip_file(name: &str) -> String {
     format!("compared/{name}.png")
 }
 
-fn current_line(file: &str, shot: &Shot, fingerprint: &str) -> String {
+/// The file of a picture, its size and its samples.
+fn shot_words(file: &str, shot: &Shot) -> String {
     let ([width, height], samples) = (shot.size, shot.samples);
-    format!("{file}  {width}x{height}, {samples} samples, of {fingerprint}")
+    format!("{file}  {width}x{height}, {samples} samples")
 }
 
 fn render_command(name: &str) -> String {
@@ -192,12 +180,6 @@ fn compiled_stages(
     language: Language,
 ) -> Result<Stages, Diagnostics> {
     programs.stages(known_program(programs, &pass.program)?, &pass.settings, language)
-}
-
-/// Everything of a preset that its picture depends on, as one text.
-fn settings_text(preset: &Preset) -> String {
-    let Preset { program, key, scene, probe, passes, numbers, .. } = preset;
-    serde_json::json!([program, key, scene, probe, passes, numbers]).to_string()
 }
 
 /// Shapes, lamps and viewer of a scene as text, to the thousandth: the last digits of a sine differ
@@ -270,9 +252,12 @@ fn first_alike(cards: &[&Card]) -> Vec<usize> {
     cards.iter().map(first).collect()
 }
 
-/// Which driver drew which picture from what: a line for each picture.
+/// Which driver drew which picture: a line for each picture.
 pub fn adapter_lines(exhibits: &[Exhibit], shot: &Shot) -> String {
-    let line = |exhibit: &Exhibit| format!("{}, {}\n", exhibit.card.current(shot), exhibit.adapter);
+    let line = |exhibit: &Exhibit| {
+        let file = picture_file(&exhibit.card.preset.name);
+        format!("{}, {}\n", shot_words(&file, shot), exhibit.adapter)
+    };
     exhibits.iter().map(line).collect()
 }
 

@@ -112,7 +112,12 @@ pub fn draw_strip(
         let (left, top) = (index % across * (width + GAP), index / across * (tall + GAP));
         let mut small = picture.shrunk(ZOOM);
         small.outline(inset.map(|at| at / ZOOM), [width / ZOOM, height / ZOOM], FRAME);
-        write_label(&mut strip, &panel.label, [left + MARGIN, top + 4], width - 2 * MARGIN);
+        write_label(
+            &mut strip,
+            &panel.label,
+            [left + MARGIN, top + 4],
+            width.saturating_sub(2 * MARGIN),
+        );
         strip.place(&small, [left, top + LABEL]);
         strip.place(&picture.part(inset, [width, height]), [left, top + LABEL + height + GAP]);
     }

@@ -151,10 +151,10 @@ fn label_named(diagnostic: Diagnostic, composed: &Composed, error: &ValidationEr
         | ValidationError::ConstExpression { .. }
         | ValidationError::ArraySizeError { .. } => ("", "in this module"),
     };
-    let place = name_place(composed, name).or_else(|| first_place(composed));
-    match place {
-        Some(span) => diagnostic.at(span, words),
-        None => diagnostic,
+    match (name_place(composed, name), first_place(composed)) {
+        (Some(span), _) => diagnostic.at(span, words),
+        (None, Some(span)) => diagnostic.at(span, "in this module"),
+        (None, None) => diagnostic,
     }
 }
 

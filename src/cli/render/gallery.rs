@@ -1,4 +1,5 @@
-//! `lamplight render --all` and `lamplight render --comparisons`: every preset and every comparison.
+//! `lamplight render --all` and `lamplight render --comparisons`: every preset and every
+//! comparison.
 
 use std::io::Write;
 use std::time::Instant;

@@ -70,8 +70,9 @@ pub struct Arguments {
     /// Width and height in pixels [default: 512x512; 960x720 with `--all` or `--comparisons`].
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<[u32; 2]>,
-    /// Samples of each pixel, which are averaged [default: 4; 16 with `--all` or `--comparisons`; 1 on `eval`]. A
-    /// picture that reads earlier passes of the viewer has at most nine: all passes are drawn finer.
+    /// Samples of each pixel, which are averaged [default: 4; 16 with `--all` or `--comparisons`; 1
+    /// on `eval`]. A picture that reads earlier passes of the viewer has at most nine: all passes
+    /// are drawn finer.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     samples: Option<u32>,
     /// Exposure in stops: each stop doubles all light.
@@ -87,8 +88,8 @@ pub struct Arguments {
     /// The source language.
     #[arg(long, value_enum, default_value = "wesl")]
     lang: LanguageName,
-    /// The environment: `studio`, `daylight`, `dusk`, `parlour`, `checks`, `constant`, or a Radiance
-    /// file (`.hdr`) [default: that of the scene, else `studio`].
+    /// The environment: `studio`, `daylight`, `dusk`, `parlour`, `checks`, `constant`, or a
+    /// Radiance file (`.hdr`) [default: that of the scene, else `studio`].
     #[arg(long, value_name = "NAME|FILE")]
     environment: Option<String>,
     #[command(flatten)]
