@@ -1,8 +1,7 @@
 //! Attributes where they do not belong.
 
 use super::constants::check_untyped;
-use super::memory::stage_of;
-use super::names::Module;
+use super::names::{Module, stage_of};
 use super::syntax::{Attribute, Declaration, DeclarationKind, ExprKind, Function, Tree};
 use super::{Problem, Rule};
 

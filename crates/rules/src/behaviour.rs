@@ -1,7 +1,8 @@
 //! What control flow may do after a statement ("Statements Behavior Analysis" in the
 //! specification). The parser computes it for each statement from those within.
 
-use super::syntax::{Block, Clause, Statement, StatementKind, Tree};
+use super::statements::inner_blocks;
+use super::syntax::{Block, Statement, StatementKind, Tree};
 use super::{Problem, Rule};
 
 /// A set of ways in which control flow leaves a statement.
@@ -44,9 +45,8 @@ pub fn of_block(block: &Block<'_>) -> Behaviour {
     of_statements(&block.statements)
 }
 
-pub fn of_switch(clauses: &[Clause<'_>]) -> Behaviour {
-    let all =
-        clauses.iter().fold(Behaviour::NONE, |found, clause| found.or(of_block(&clause.body)));
+pub fn of_switch(clauses: &[Block<'_>]) -> Behaviour {
+    let all = clauses.iter().fold(Behaviour::NONE, |found, clause| found.or(of_block(clause)));
     match all.has(Behaviour::BREAK) {
         true => all.or(Behaviour::NEXT).without(Behaviour::BREAK),
         false => all,
@@ -90,48 +90,24 @@ pub fn check(tree: &Tree<'_>) -> Vec<Problem> {
 }
 
 fn check_block(block: &Block<'_>, problems: &mut Vec<Problem>) {
-    for statement in &block.statements {
-        check_statement(statement, problems);
-    }
+    block.statements.iter().for_each(|statement| check_statement(statement, problems));
 }
 
 fn check_statement(statement: &Statement<'_>, problems: &mut Vec<Problem>) {
-    match &statement.kind {
-        StatementKind::Block(block) => check_block(block, problems),
-        StatementKind::If { condition: _, accept, reject } => {
-            check_block(accept, problems);
-            if let Some(reject) = reject {
-                check_statement(reject, problems);
+    inner_blocks(statement).into_iter().for_each(|inner| check_block(inner, problems));
+    let is_loop = match &statement.kind {
+        StatementKind::Loop { body: _, continuing } => {
+            let leaves = Behaviour::CONTINUE.or(Behaviour::RETURN);
+            if let Some(continuing) = continuing.as_ref().filter(|own| of_block(own).has(leaves)) {
+                let message = "a `continuing` block must not return or continue".to_owned();
+                problems.push(Problem::new(Rule::Behaviour, continuing.place, message));
             }
+            true
         }
-        StatementKind::Switch { selector: _, filters: _, clauses } => {
-            clauses.iter().for_each(|clause| check_block(&clause.body, problems));
-        }
-        StatementKind::Loop { body, continuing } => {
-            check_block(body, problems);
-            if let Some(continuing) = continuing {
-                check_block(continuing, problems);
-                if of_block(continuing).has(Behaviour::CONTINUE.or(Behaviour::RETURN)) {
-                    let message = "a `continuing` block must not return or continue".to_owned();
-                    problems.push(Problem::new(Rule::Behaviour, continuing.place, message));
-                }
-            }
-        }
-        StatementKind::For(parts) => check_block(&parts.body, problems),
-        StatementKind::While { condition: _, body } => check_block(body, problems),
-        StatementKind::Empty
-        | StatementKind::Declare(_)
-        | StatementKind::Assign { .. }
-        | StatementKind::Count { .. }
-        | StatementKind::Call(_)
-        | StatementKind::Return(_)
-        | StatementKind::Break
-        | StatementKind::BreakIf(_)
-        | StatementKind::Continue
-        | StatementKind::Discard
-        | StatementKind::Assert => {}
-    }
-    if statement.behaviour == Behaviour::NONE {
+        StatementKind::For(_) | StatementKind::While { .. } => true,
+        _ => false,
+    };
+    if is_loop && statement.behaviour == Behaviour::NONE {
         let message = "this loop never ends: nothing in it breaks or returns".to_owned();
         problems.push(Problem::new(Rule::Behaviour, statement.place, message));
     }

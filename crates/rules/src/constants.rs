@@ -108,14 +108,7 @@ fn written_suffix(module: &Module<'_, '_>, arguments: &[ExprId]) -> Option<char>
 /// Why a texture of this kind cannot be read so.
 fn wrong_texture(module: &Module<'_, '_>, name: &str, arguments: &[ExprId]) -> Option<String> {
     let at = usize::from(component(module, name, arguments).is_some());
-    let ExprKind::Name { name: texture, template: _ } = module.tree.kind(*arguments.get(at)?)
-    else {
-        return None;
-    };
-    let of_type = match module.find(texture) {
-        Some(Global::Variable(at)) => module.tree.declarations[at].of_type,
-        _ => None,
-    };
+    let of_type = module.declared_type(*arguments.get(at)?);
     let kind = of_type.and_then(|id| module.type_of(id)).map_or("", |(kind, _)| kind);
     if at == 1 && kind.starts_with("texture_depth_") {
         return Some("a depth texture has no component to choose".to_owned());
@@ -177,7 +170,10 @@ fn values_of(module: &Module<'_, '_>, id: ExprId, depth: usize) -> Option<Vec<f6
         ExprKind::Call { callee, template: _, arguments } => {
             construct(module, callee, arguments, depth)
         }
-        ExprKind::Name { name, template } if template.is_empty() => {
+        ExprKind::Name { name: _, template: _, local: Some(local) } => {
+            values_of(module, module.tree.locals[*local as usize].constant?, depth + 1)
+        }
+        ExprKind::Name { name, template, local: None } if template.is_empty() => {
             (module.find(name) == Some(Global::Constant)).then_some(())?;
             let mut declared = module.tree.declarations.iter();
             let found =

@@ -37,7 +37,7 @@ impl Place {
 pub enum Rule {
     /// The grammar.
     Grammar,
-    /// The text nests deeper than this analysis goes.
+    /// The text nests deeper than browsers or this analysis go, or is too large for it.
     Depth,
     /// Operators beside each other that need brackets.
     Precedence,

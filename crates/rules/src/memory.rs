@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::names::{Global, Module};
-use super::syntax::{Attribute, Declaration, ExprId, ExprKind, Function, Tree};
+use super::names::{Module, Uses, stage_of};
+use super::syntax::{Declaration, ExprId, ExprKind, Tree};
 use super::{Place, Problem, Rule};
 
 pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
@@ -12,10 +12,10 @@ pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
         check_variable(module, declaration, &mut problems);
     }
     for expression in &tree.expressions {
-        if let ExprKind::Name { name: "ptr", template } = &expression.kind {
+        if let ExprKind::Name { name: "ptr", template, local: _ } = &expression.kind {
             check_pointer(module, template, expression.place, &mut problems);
         }
-        if let ExprKind::Name { name: "atomic", template } = &expression.kind {
+        if let ExprKind::Name { name: "atomic", template, local: _ } = &expression.kind {
             let of = template.first().and_then(|id| module.type_of(*id));
             if !of.is_some_and(|(name, _)| matches!(name, "i32" | "u32" | "i64" | "u64")) {
                 let message = "`atomic` takes `i32` or `u32`".to_owned();
@@ -85,24 +85,14 @@ fn has_atomic(module: &Module<'_, '_>, id: ExprId, depth: usize) -> bool {
     }
 }
 
-/// The stage of an entry point.
-pub fn stage_of(function: &Function<'_>) -> Option<&'static str> {
-    let has = |stage: &str| {
-        let is = |attribute: &Attribute<'_>| attribute.name == stage;
-        function.attributes.iter().any(is)
-    };
-    ["vertex", "fragment", "compute"].into_iter().find(|stage| has(stage))
-}
-
 /// Where a stage reaches memory that it must not.
 fn check_stages(tree: &Tree<'_>, module: &Module<'_, '_>, problems: &mut Vec<Problem>) {
     if tree.functions.iter().all(|function| matches!(stage_of(function), None | Some("compute"))) {
         return;
     }
-    let uses = uses_of_functions(tree, module);
     for (entry, function) in tree.functions.iter().enumerate() {
         let Some(stage @ ("vertex" | "fragment")) = stage_of(function) else { continue };
-        for variable in reached_variables(&uses, entry) {
+        for variable in reached_variables(&module.uses, entry) {
             let declaration = &tree.declarations[variable];
             let Some(what) = forbidden(module, declaration, stage) else { continue };
             let message = format!("the {stage} stage cannot use `{}`: {what}", declaration.name);
@@ -133,40 +123,6 @@ fn forbidden(
     let access = module.template_word(template, 1);
     let is_written = kind.starts_with("texture_storage_") && access != Some("read");
     is_written.then_some("it is a storage texture that can be written")
-}
-
-/// The functions and the variables of the module that a function names.
-#[derive(Default, Clone)]
-struct Uses {
-    functions: BTreeSet<usize>,
-    variables: BTreeSet<usize>,
-}
-
-fn uses_of_functions(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Uses> {
-    let mut uses = vec![Uses::default(); tree.functions.len()];
-    for expression in &tree.expressions {
-        let (ExprKind::Name { name, .. } | ExprKind::Call { callee: name, .. }) = &expression.kind
-        else {
-            continue;
-        };
-        let Some(function) = tree.enclosing(expression.place) else { continue };
-        match module.find(name) {
-            Some(Global::Function(callee)) => {
-                uses[function].functions.insert(callee);
-            }
-            Some(Global::Variable(variable)) if !is_local(&tree.functions[function], name) => {
-                uses[function].variables.insert(variable);
-            }
-            _ => {}
-        }
-    }
-    uses
-}
-
-/// Whether a function has a parameter or a local of that name, so that it may not mean the module's.
-fn is_local(function: &Function<'_>, name: &str) -> bool {
-    function.parameters.iter().any(|parameter| parameter.name == name)
-        || super::statements::declares(&function.body, name)
 }
 
 fn reached_variables(uses: &[Uses], entry: usize) -> BTreeSet<usize> {

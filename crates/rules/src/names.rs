@@ -2,7 +2,9 @@
 
 use rustc_hash::FxHashMap;
 
-use super::syntax::{DeclarationKind, ExprId, ExprKind, Tree};
+use std::collections::BTreeSet;
+
+use super::syntax::{Attribute, DeclarationKind, ExprId, ExprKind, Function, Tree};
 
 /// What a name means in the scope of the module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +21,15 @@ pub enum Global {
 pub struct Module<'t, 'm> {
     pub tree: &'m Tree<'t>,
     names: FxHashMap<&'t str, Global>,
+    /// What each function names.
+    pub uses: Vec<Uses>,
+}
+
+/// The functions and the variables of the module that a function names.
+#[derive(Debug, Default, Clone)]
+pub struct Uses {
+    pub functions: BTreeSet<usize>,
+    pub variables: BTreeSet<usize>,
 }
 
 impl<'t, 'm> Module<'t, 'm> {
@@ -37,7 +48,31 @@ impl<'t, 'm> Module<'t, 'm> {
         names.extend(structs.map(|(at, structure)| (structure.name, Global::Struct(at))));
         let aliases = tree.aliases.iter().enumerate();
         names.extend(aliases.map(|(at, alias)| (alias.name, Global::Alias(at))));
-        Self { tree, names }
+        let mut module = Self { tree, names, uses: Vec::new() };
+        module.uses = module.uses_of_functions();
+        module
+    }
+
+    fn uses_of_functions(&self) -> Vec<Uses> {
+        let mut uses = vec![Uses::default(); self.tree.functions.len()];
+        for expression in &self.tree.expressions {
+            let (ExprKind::Name { name, template: _, local: None }
+            | ExprKind::Call { callee: name, template: _, arguments: _ }) = &expression.kind
+            else {
+                continue;
+            };
+            let Some(function) = self.tree.enclosing(expression.place) else { continue };
+            match self.find(name) {
+                Some(Global::Function(callee)) => {
+                    uses[function].functions.insert(callee);
+                }
+                Some(Global::Variable(variable)) => {
+                    uses[function].variables.insert(variable);
+                }
+                _ => {}
+            }
+        }
+        uses
     }
 
     pub fn find(&self, name: &str) -> Option<Global> {
@@ -48,7 +83,7 @@ impl<'t, 'm> Module<'t, 'm> {
     pub fn resolved(&self, mut id: ExprId) -> ExprId {
         // Aliases that lead to each other are refused before; the bound is only for safety.
         for _ in 0..64 {
-            let ExprKind::Name { name, template } = self.tree.kind(id) else { break };
+            let ExprKind::Name { name, template, local: _ } = self.tree.kind(id) else { break };
             match self.find(name) {
                 Some(Global::Alias(at)) if template.is_empty() => {
                     id = self.tree.aliases[at].of_type;
@@ -62,7 +97,7 @@ impl<'t, 'm> Module<'t, 'm> {
     /// The name and the template list of a type.
     pub fn type_of(&self, id: ExprId) -> Option<(&'t str, &'m [ExprId])> {
         match self.tree.kind(self.resolved(id)) {
-            ExprKind::Name { name, template } => Some((name, template)),
+            ExprKind::Name { name, template, local: _ } => Some((name, template)),
             _ => None,
         }
     }
@@ -70,7 +105,21 @@ impl<'t, 'm> Module<'t, 'm> {
     /// A word of a template list: an address space, an access mode, a format.
     pub fn template_word(&self, template: &[ExprId], at: usize) -> Option<&'t str> {
         match self.tree.kind(*template.get(at)?) {
-            ExprKind::Name { name, template: _ } => Some(name),
+            ExprKind::Name { name, template: _, local: _ } => Some(name),
+            _ => None,
+        }
+    }
+
+    /// The type that stands at the declaration of a name.
+    pub fn declared_type(&self, id: ExprId) -> Option<ExprId> {
+        match self.tree.kind(self.tree.inner(id)) {
+            ExprKind::Name { name: _, template: _, local: Some(local) } => {
+                self.tree.locals[*local as usize].of_type
+            }
+            ExprKind::Name { name, template: _, local: None } => match self.find(name)? {
+                Global::Variable(at) => self.tree.declarations[at].of_type,
+                _ => None,
+            },
             _ => None,
         }
     }
@@ -89,6 +138,15 @@ impl<'t, 'm> Module<'t, 'm> {
             _ => None,
         }
     }
+}
+
+/// The stage of an entry point.
+pub fn stage_of(function: &Function<'_>) -> Option<&'static str> {
+    let has = |stage: &str| {
+        let is = |attribute: &Attribute<'_>| attribute.name == stage;
+        function.attributes.iter().any(is)
+    };
+    ["vertex", "fragment", "compute"].into_iter().find(|stage| has(stage))
 }
 
 /// Whether memory of an address space and an access mode can change.

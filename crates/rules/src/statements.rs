@@ -1,7 +1,9 @@
 //! Walks over statements, and `continue` past a declaration that `continuing` needs.
 
+use std::collections::BTreeSet;
+
 use super::constants::check_untyped;
-use super::syntax::{Block, DeclarationKind, ExprKind, Statement, StatementKind, Tree};
+use super::syntax::{Block, DeclarationKind, ExprKind, LocalId, Statement, StatementKind, Tree};
 use super::{Place, Problem, Rule};
 
 /// The blocks right within a statement.
@@ -12,16 +14,14 @@ pub fn inner_blocks<'b, 't>(statement: &'b Statement<'t>) -> Vec<&'b Block<'t>> 
             let reject = reject.iter().flat_map(|reject| inner_blocks(reject));
             std::iter::once(accept).chain(reject).collect()
         }
-        StatementKind::Switch { selector: _, filters: _, clauses } => {
-            clauses.iter().map(|clause| &clause.body).collect()
-        }
+        StatementKind::Switch { selector: _, filters: _, clauses } => clauses.iter().collect(),
         StatementKind::Loop { body, continuing } => {
             std::iter::once(body).chain(continuing).collect()
         }
         StatementKind::For(parts) => vec![&parts.body],
         StatementKind::While { condition: _, body } => vec![body],
         StatementKind::Empty
-        | StatementKind::Declare(_)
+        | StatementKind::Declare(..)
         | StatementKind::Assign { .. }
         | StatementKind::Count { .. }
         | StatementKind::Call(_)
@@ -32,22 +32,6 @@ pub fn inner_blocks<'b, 't>(statement: &'b Statement<'t>) -> Vec<&'b Block<'t>> 
         | StatementKind::Discard
         | StatementKind::Assert => Vec::new(),
     }
-}
-
-/// Whether anything in a block declares a name.
-pub fn declares(block: &Block<'_>, name: &str) -> bool {
-    block.statements.iter().any(|statement| {
-        let is_it = |statement: &Statement<'_>| {
-            matches!(&statement.kind, StatementKind::Declare(own) if own.name == name)
-        };
-        let starts = match &statement.kind {
-            StatementKind::For(parts) => parts.start.as_ref().is_some_and(is_it),
-            _ => false,
-        };
-        is_it(statement)
-            || starts
-            || inner_blocks(statement).into_iter().any(|inner| declares(inner, name))
-    })
 }
 
 /// Loops with a `continue` past a declaration that their `continuing` block uses, and variables
@@ -65,7 +49,7 @@ fn check_block(tree: &Tree<'_>, block: &Block<'_>, problems: &mut Vec<Problem>) 
         if let StatementKind::Loop { body, continuing: Some(continuing) } = &statement.kind {
             problems.extend(passed_declaration(tree, body, continuing));
         }
-        if let StatementKind::Declare(own) = &statement.kind
+        if let StatementKind::Declare(_, own) = &statement.kind
             && own.kind != DeclarationKind::Const
             && own.of_type.is_none()
         {
@@ -81,16 +65,22 @@ fn passed_declaration(
     continuing: &Block<'_>,
 ) -> Option<Problem> {
     let from = body.statements.iter().find_map(first_continue)?;
-    let passed = body.statements.iter().filter_map(|statement| match &statement.kind {
-        StatementKind::Declare(own)
+    let mut passed = body.statements.iter().filter_map(|statement| match &statement.kind {
+        StatementKind::Declare(id, own)
             if own.kind != DeclarationKind::Const && own.place.start > from.start =>
         {
-            Some(own)
+            Some((*id, own))
         }
         _ => None,
     });
-    let mut passed = passed.filter(|own| !declares(continuing, own.name));
-    let found = passed.find(|own| is_used(tree, continuing.place, own.name))?;
+    let used: BTreeSet<LocalId> = tree
+        .within(continuing.place)
+        .filter_map(|one| match &one.kind {
+            ExprKind::Name { name: _, template: _, local } => *local,
+            _ => None,
+        })
+        .collect();
+    let (_, found) = passed.find(|(id, _)| used.contains(id))?;
     let message = format!("this `continue` passes the declaration of `{}`", found.name);
     let mut problem = Problem::new(Rule::Behaviour, from, message);
     problem.notes.push((found.place, "`continuing` uses this".to_owned()));
@@ -107,13 +97,4 @@ fn first_continue(statement: &Statement<'_>) -> Option<Place> {
             .flat_map(|block| &block.statements)
             .find_map(first_continue),
     }
-}
-
-fn is_used(tree: &Tree<'_>, place: Place, name: &str) -> bool {
-    // Expressions are in the order in which they end.
-    let first = tree.expressions.partition_point(|one| one.place.end <= place.start);
-    tree.expressions[first..]
-        .iter()
-        .take_while(|one| one.place.end <= place.end)
-        .any(|one| matches!(&one.kind, ExprKind::Name { name: own, template: _ } if *own == name))
 }

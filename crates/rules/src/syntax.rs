@@ -5,6 +5,9 @@ use super::Place;
 /// An expression of a [`Tree`].
 pub type ExprId = u32;
 
+/// A parameter or a declaration in a function, by its number in the text.
+pub type LocalId = u32;
+
 #[derive(Debug)]
 pub struct Expr<'t> {
     pub kind: ExprKind<'t>,
@@ -20,6 +23,8 @@ pub enum ExprKind<'t> {
     Name {
         name: &'t str,
         template: Vec<ExprId>,
+        /// What it means, where that is no declaration of the module.
+        local: Option<LocalId>,
     },
     Call {
         callee: &'t str,
@@ -106,7 +111,8 @@ pub enum StatementKind<'t> {
     Switch {
         selector: ExprId,
         filters: Vec<Filter>,
-        clauses: Vec<Clause<'t>>,
+        /// The bodies of its cases.
+        clauses: Vec<Block<'t>>,
     },
     Loop {
         body: Block<'t>,
@@ -117,7 +123,7 @@ pub enum StatementKind<'t> {
         condition: ExprId,
         body: Block<'t>,
     },
-    Declare(Declaration<'t>),
+    Declare(LocalId, Declaration<'t>),
     /// Without a target it is `_ = value`.
     Assign {
         target: Option<ExprId>,
@@ -142,11 +148,6 @@ pub struct ForLoop<'t> {
     pub start: Option<Statement<'t>>,
     pub condition: Option<ExprId>,
     pub update: Option<Statement<'t>>,
-    pub body: Block<'t>,
-}
-
-#[derive(Debug)]
-pub struct Clause<'t> {
     pub body: Block<'t>,
 }
 
@@ -179,10 +180,20 @@ pub struct Member<'t> {
     pub attributes: Vec<Attribute<'t>>,
 }
 
+/// What a name in a function may mean.
+#[derive(Debug)]
+pub struct Local {
+    pub of_type: Option<ExprId>,
+    /// The value of a `const`.
+    pub constant: Option<ExprId>,
+}
+
 #[derive(Debug)]
 pub struct Function<'t> {
     pub name: &'t str,
     pub place: Place,
+    /// The number of the first parameter. The others follow it.
+    pub first_local: LocalId,
     pub attributes: Vec<Attribute<'t>>,
     pub filters: Vec<Filter>,
     pub parameters: Vec<Member<'t>>,
@@ -216,7 +227,8 @@ pub struct Tree<'t> {
     pub aliases: Vec<Alias<'t>>,
     /// `const`, `override` and `var` of the module.
     pub declarations: Vec<Declaration<'t>>,
-    pub asserts: Vec<ExprId>,
+    /// By their numbers.
+    pub locals: Vec<Local>,
 }
 
 impl<'t> Tree<'t> {
@@ -234,6 +246,13 @@ impl<'t> Tree<'t> {
             id = *inner;
         }
         id
+    }
+
+    /// The expressions within a place, each after those in it. The place must hold whole expressions.
+    pub fn within(&self, place: Place) -> impl Iterator<Item = &Expr<'t>> {
+        // Expressions are in the order in which they end.
+        let first = self.expressions.partition_point(|one| one.place.end <= place.start);
+        self.expressions[first..].iter().take_while(move |one| one.place.end <= place.end)
     }
 
     /// The function that a place is in. Functions are in the order of the text.

@@ -14,6 +14,8 @@ const MODULE: &str = "
 @group(0) @binding(2) var<uniform> same: vec4i;
 @group(0) @binding(3) var<storage, read_write> changing: array<i32, 8>;
 var<workgroup> own: i32;
+fn two(x: ptr<function, i32>, y: i32, p: vec4f) { if *x > 0 { _ = dpdx(p); } }
+fn set(x: ptr<function, i32>, y: i32) -> i32 { *x = y; return 0; }
 ";
 
 /// The body of a fragment or compute shader, the rule that it breaks, and what must be at the place.
@@ -24,6 +26,32 @@ const FRAGMENT: &[(&str, Option<(Rule, &str)>)] = &[
     ("if p.x > 1.0 { @diagnostic(off, derivative_uniformity) { _ = dpdx(p); } }", None),
     ("if p.x > 1.0 { return; } _ = fwidth(p);", Some((Rule::Derivative, "fwidth(p)"))),
     ("if p.x > 1.0 { discard; } _ = fwidth(p);", None),
+    (
+        "while same.x > 0 { if p.x > 1.0 { return; } break; } _ = dpdx(p);",
+        Some((Rule::Derivative, "dpdx(p)")),
+    ),
+    ("while same.x > 0 { if same.y > 1 { return; } break; } _ = dpdx(p);", None),
+    (
+        "for (var i = 0; i < 2; i++) { if p.x > 1.0 { return; } break; } _ = dpdx(p);",
+        Some((Rule::Derivative, "dpdx(p)")),
+    ),
+    (
+        "loop { var i = 0; if same.x > 0 { i = i32(p.x); continue; } i = 0; \
+         continuing { if i > 0 { _ = dpdx(p); } break if same.y > 0; } }",
+        Some((Rule::Derivative, "dpdx(p)")),
+    ),
+    (
+        "loop { var i = 0; if same.x > 0 { i = same.z; continue; } i = 0; \
+         continuing { if i > 0 { _ = dpdx(p); } break if same.y > 0; } }",
+        None,
+    ),
+    ("var x = same.x; two(&x, set(&x, i32(p.x)), p);", Some((Rule::Derivative, "dpdx(p)"))),
+    ("var x = same.x; two(&x, set(&x, same.y), p);", None),
+    (
+        "@diagnostic(off, derivative_uniformity.other) if p.x > 1.0 { _ = dpdx(p); }",
+        Some((Rule::Derivative, "dpdx(p)")),
+    ),
+    ("if p.x > 1.0 { loop { loop { } } }", Some((Rule::Behaviour, "loop { loop { } }"))),
     ("if p.x > 1.0 { _ = textureSampleLevel(t, s, p.xy, 0.0); }", None),
     (
         "loop { _ = textureSample(t, s, p.xy); continuing { break if p.x == 0.0; } }",
@@ -76,6 +104,22 @@ const TEXTS: &[(&str, Option<Rule>)] = &[
     ("@id(1) const a = 1;", Some(Rule::Attribute)),
     ("var<workgroup> a: i32;\n@fragment fn f() { _ = a; }", Some(Rule::Memory)),
     (
+        "@group(0) @binding(4) var<storage, read_write> a: i32;\n\
+         @vertex fn f() -> @builtin(position) vec4f { let b = a; let a = 1; return vec4f(); }",
+        Some(Rule::Memory),
+    ),
+    (
+        "@group(0) @binding(4) var<storage, read_write> a: i32;\n\
+         @vertex fn f() -> @builtin(position) vec4f { let a = 1; _ = a; return vec4f(); }",
+        None,
+    ),
+    ("const a = 0.0;\nfn f(x: f32) -> f32 { let a = x; return inverseSqrt(a); }", None),
+    ("const a = 0.0;\nfn f(x: f32) -> f32 { return inverseSqrt(a); }", Some(Rule::Constant)),
+    (
+        "const a = 1.0;\nfn f() -> f32 { const a = 0.0; return inverseSqrt(a); }",
+        Some(Rule::Constant),
+    ),
+    (
         "@group(0) @binding(0) var<storage, read_write> a: i32;\n\
          @vertex fn f() -> @builtin(position) vec4f { a = 1; return vec4f(); }",
         Some(Rule::Memory),
@@ -96,6 +140,7 @@ pub fn tests() -> Vec<Trial> {
         }),
         Trial::test("rules::texts", texts),
         Trial::test("rules::deep_texts", deep_texts),
+        Trial::test("rules::large_functions", large_functions),
         Trial::test("rules::damaged_texts", damaged_texts),
     ]
 }
@@ -140,6 +185,27 @@ fn deep_texts() -> Result<(), Failed> {
         }
     }
     Ok(())
+}
+
+/// The effort depends on what loops and branches name, and not on all variables around them. Where
+/// that is much, the analysis ends with a message.
+fn large_functions() -> Result<(), Failed> {
+    let numbered =
+        |text: &str| -> String { (0..4000).map(|at| text.replace('#', &at.to_string())).collect() };
+    let variables = numbered("var v# = 0; ");
+    let loops = numbered("for (; v# < 2; v#++) { if v# > 1 { break; } } ");
+    let text = format!("fn f() {{ {variables} {loops} }}");
+    let found = errors(&text);
+    if !found.is_empty() {
+        return Err(format!("loops give {found:?}").into());
+    }
+    let (uses, breaks) = (numbered("v# = v0; "), numbered("if v# > 1 { break; } "));
+    let text = format!("fn f() {{ {variables} loop {{ {uses} {breaks} }} }}");
+    let found: Vec<Rule> = errors(&text).iter().map(|problem| problem.rule).collect();
+    match found == [Rule::Depth] {
+        true => Ok(()),
+        false => Err(format!("breaks give {found:?}").into()),
+    }
 }
 
 /// Texts that are no programs any more get an answer too. naga has not read the text by then.

@@ -40,6 +40,35 @@ struct Scope {
     pair_pointers: Vec<String>,
     /// What each pointer leads to, so that calls get no two pointers to one variable.
     leads: Vec<(String, String)>,
+    /// The names of the innermost scope, which it cannot declare again.
+    own: Vec<String>,
+}
+
+impl Scope {
+    /// A scope within this one.
+    fn inner(&self) -> Self {
+        Self { own: Vec::new(), ..self.clone() }
+    }
+
+    /// Forgets what a name meant.
+    fn hide(&mut self, name: &str) {
+        let lists = [
+            &mut self.values,
+            &mut self.numbers,
+            &mut self.pairs,
+            &mut self.number_pointers,
+            &mut self.pair_pointers,
+        ];
+        lists.into_iter().for_each(|list| list.retain(|known| known != name));
+    }
+
+    /// The names that it can declare again.
+    fn outer(&self) -> Vec<String> {
+        let all = self.values.iter().chain(&self.numbers).chain(&self.pairs);
+        let all = all.chain(&self.number_pointers).chain(&self.pair_pointers);
+        let is_plain = |name: &&String| name.chars().all(char::is_alphanumeric);
+        all.filter(is_plain).filter(|name| !self.own.contains(name)).cloned().collect()
+    }
 }
 
 struct Writer<'r> {
@@ -92,6 +121,18 @@ impl Writer<'_> {
         format!("{kind}{}", self.names)
     }
 
+    /// The name of a declaration, after its initializer was written. It may hide another one.
+    fn declared(&mut self, scope: &mut Scope, kind: &str) -> String {
+        let outer = scope.outer();
+        let name = match !outer.is_empty() && self.random.chance(20) {
+            true => self.random.pick(&outer).clone(),
+            false => self.name(kind),
+        };
+        scope.hide(&name);
+        scope.own.push(name.clone());
+        name
+    }
+
     fn filter(&mut self) -> &'static str {
         match self.random.below(40) {
             0 => "@diagnostic(off, derivative_uniformity) ",
@@ -111,6 +152,7 @@ impl Writer<'_> {
         let mut list = Vec::new();
         for (at, parameter) in parameters.iter().enumerate() {
             let name = format!("p{at}");
+            scope.own.push(name.clone());
             match parameter {
                 Parameter::Value => {
                     list.push(format!("{name}: i32"));
@@ -182,8 +224,12 @@ impl Writer<'_> {
 
     fn block(&mut self, scope: &Scope, depth: usize) {
         self.text.push_str("{\n");
-        let mut inner = scope.clone();
+        let mut inner = scope.inner();
         self.statements(&mut inner, depth + 1);
+        if self.random.chance(8) {
+            let way = self.way(&inner);
+            writeln!(self.text, "{way}").unwrap();
+        }
         self.text.push('}');
     }
 
@@ -225,12 +271,14 @@ impl Writer<'_> {
     fn declare(&mut self, scope: &mut Scope) {
         match self.random.below(3) {
             0 => {
-                let (name, value) = (self.name("l"), self.number(scope, 2));
+                let value = self.number(scope, 2);
+                let name = self.declared(scope, "l");
                 writeln!(self.text, "let {name} = {value};").unwrap();
                 scope.values.push(name);
             }
             1 => {
-                let (name, value) = (self.name("v"), self.number(scope, 2));
+                let value = self.number(scope, 2);
+                let name = self.declared(scope, "v");
                 match self.random.chance(80) {
                     true => writeln!(self.text, "var {name} = {value};").unwrap(),
                     false => writeln!(self.text, "var {name}: i32;").unwrap(),
@@ -238,11 +286,11 @@ impl Writer<'_> {
                 scope.numbers.push(name);
             }
             _ => {
-                let name = self.name("s");
+                let value = self.number(scope, 1);
+                let name = self.declared(scope, "s");
                 match self.random.chance(50) {
                     true => writeln!(self.text, "var {name}: Pair;").unwrap(),
                     false => {
-                        let value = self.number(scope, 1);
                         writeln!(self.text, "var {name} = Pair({value}, array(1, 2, 3, 4));")
                             .unwrap();
                     }
@@ -254,6 +302,7 @@ impl Writer<'_> {
 
     fn pointer(&mut self, scope: &mut Scope) {
         let name = self.name("q");
+        scope.own.push(name.clone());
         let to_part = self.random.chance(50);
         let base = self.pair(scope);
         match (base, to_part) {
@@ -423,15 +472,20 @@ impl Writer<'_> {
             return;
         }
         let condition = self.condition(scope, 1);
-        let way = match (self.random.below(3), self.leaves.last().copied().unwrap_or(0)) {
+        let way = self.way(scope);
+        writeln!(self.text, "if {condition} {{ {way} }}").unwrap();
+    }
+
+    /// A way out of a loop or of the function.
+    fn way(&mut self, scope: &Scope) -> String {
+        match (self.random.below(3), self.leaves.last().copied().unwrap_or(0)) {
             (0, 1..) => "break;".to_owned(),
             (1, 2) => "continue;".to_owned(),
             _ => match self.returns {
                 true => format!("return {};", self.number(scope, 1)),
                 false => "return;".to_owned(),
             },
-        };
-        writeln!(self.text, "if {condition} {{ {way} }}").unwrap();
+        }
     }
 
     fn conditional(&mut self, scope: &Scope, depth: usize) {
@@ -481,8 +535,9 @@ impl Writer<'_> {
     fn for_loop(&mut self, scope: &Scope, depth: usize) {
         let name = self.name("i");
         let (start, end) = (self.number(scope, 1), self.number(scope, 1));
-        let mut inner = scope.clone();
+        let mut inner = scope.inner();
         inner.numbers.push(name.clone());
+        inner.own.push(name.clone());
         let condition = match self.random.chance(80) {
             true => format!("{name} < {end}"),
             false => self.condition(&inner, 1),
@@ -498,11 +553,14 @@ impl Writer<'_> {
 
     fn endless_loop(&mut self, scope: &Scope, depth: usize) {
         self.text.push_str("loop {\n");
-        let mut inner = scope.clone();
+        let mut inner = scope.inner();
         let has_continuing = self.random.chance(60);
         // A `continue` must not pass the declaration of a name that `continuing` uses.
         self.inside(if has_continuing { 1 } else { 2 }, |writer| {
             writer.statements(&mut inner, depth + 1);
+        });
+        let before = inner.clone();
+        self.inside(2, |writer| {
             if !has_continuing || writer.random.chance(50) {
                 let condition = writer.condition(&inner, 1);
                 writeln!(writer.text, "if {condition} {{ break; }}").unwrap();
@@ -510,6 +568,21 @@ impl Writer<'_> {
             }
         });
         if has_continuing {
+            if self.random.chance(20) {
+                let way = self.way(&inner);
+                writeln!(self.text, "{way}").unwrap();
+            }
+            let inner = match self.random.chance(80) {
+                true => {
+                    let later = inner.own.iter().filter(|name| !before.own.contains(name));
+                    later.fold(before.clone(), |mut scope, name| {
+                        scope.hide(name);
+                        scope
+                    })
+                }
+                false => inner,
+            };
+            let inner = inner.inner();
             self.text.push_str("continuing {\n");
             let (leaves, returns) = (std::mem::take(&mut self.leaves), self.returns);
             self.assign(&inner);

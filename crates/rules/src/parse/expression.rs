@@ -198,7 +198,10 @@ impl<'t> Parser<'t> {
         let template = self.template()?;
         let kind = match self.is("(") {
             true => ExprKind::Call { callee: name, template, arguments: self.arguments()? },
-            false => ExprKind::Name { name, template },
+            false => {
+                let local = self.scope.get(name).and_then(|open| open.last()).copied();
+                ExprKind::Name { name, template, local }
+            }
         };
         self.add(kind, start)
     }
@@ -228,6 +231,6 @@ impl<'t> Parser<'t> {
         let start = self.token().place.start;
         let name = self.word()?;
         let template = self.deeper(Self::template)?;
-        self.add(ExprKind::Name { name, template }, start)
+        self.add(ExprKind::Name { name, template, local: None }, start)
     }
 }

@@ -1,7 +1,9 @@
 //! Declarations of a module, and the directives before them.
 
 use super::{Kind, Parsed, Parser};
-use crate::syntax::{Alias, Attribute, DeclarationKind, Filter, Function, Member, Struct};
+use crate::syntax::{
+    Alias, Attribute, DeclarationKind, Filter, Function, Local, LocalId, Member, Struct,
+};
 
 impl<'t> Parser<'t> {
     pub fn module(&mut self) -> Parsed<()> {
@@ -61,8 +63,7 @@ impl<'t> Parser<'t> {
             }
             "const_assert" => {
                 self.next();
-                let condition = self.expression()?;
-                self.tree.asserts.push(condition);
+                self.expression()?;
                 self.expect(";").map(drop)
             }
             "var" => self.variable(DeclarationKind::Var, attributes),
@@ -93,12 +94,19 @@ impl<'t> Parser<'t> {
             }
             false => (None, Vec::new()),
         };
+        let first_local = self.tree.locals.len() as LocalId;
         self.is_in_function = true;
-        let body = self.block()?;
+        let body = self.scoped(|parser| {
+            for Member { name, of_type, .. } in &parameters {
+                parser.declare(name, Local { of_type: Some(*of_type), constant: None });
+            }
+            parser.block()
+        })?;
         self.is_in_function = false;
         self.tree.functions.push(Function {
             name,
             place,
+            first_local,
             attributes,
             filters,
             parameters,

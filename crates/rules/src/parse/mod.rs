@@ -4,7 +4,11 @@ mod expression;
 mod item;
 mod statement;
 
-use super::syntax::{Attribute, Expr, ExprId, ExprKind, Filter, Filtered, Severity, Tree};
+use rustc_hash::FxHashMap;
+
+use super::syntax::{
+    Attribute, Expr, ExprId, ExprKind, Filter, Filtered, Local, LocalId, Severity, Tree,
+};
 use super::token::{Kind, Token, tokenize};
 use super::{Place, Problem, Rule};
 
@@ -25,6 +29,8 @@ pub fn parse(text: &str) -> Option<Parsed<(Tree<'_>, Vec<Problem>)>> {
         depth: 0,
         is_in_function: false,
         diagnostics: 0,
+        scope: FxHashMap::default(),
+        declared: Vec::new(),
     };
     Some(parser.module().map(|()| (parser.tree, parser.problems)))
 }
@@ -39,6 +45,10 @@ pub struct Parser<'t> {
     is_in_function: bool,
     /// Attributes with a filter so far.
     diagnostics: usize,
+    /// What each name means here, if it is declared in the function, with what it meant around.
+    scope: FxHashMap<&'t str, Vec<LocalId>>,
+    /// The names of the scopes that are open, in the order of their declarations.
+    declared: Vec<&'t str>,
 }
 
 impl<'t> Parser<'t> {
@@ -104,7 +114,9 @@ impl<'t> Parser<'t> {
         let height = |id: &ExprId| self.tree.expressions[*id as usize].height;
         let below = match &kind {
             ExprKind::Literal(_) => 0,
-            ExprKind::Name { name: _, template } => template.iter().map(height).max().unwrap_or(0),
+            ExprKind::Name { name: _, template, local: _ } => {
+                template.iter().map(height).max().unwrap_or(0)
+            }
             ExprKind::Call { callee: _, template, arguments } => {
                 template.iter().chain(arguments).map(height).max().unwrap_or(0)
             }
@@ -136,6 +148,25 @@ impl<'t> Parser<'t> {
         let result = read(self);
         self.depth -= 1;
         result
+    }
+
+    /// Reads something whose names end with it.
+    fn scoped<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
+        let outer = self.declared.len();
+        let result = read(self);
+        for name in self.declared.drain(outer..) {
+            self.scope.get_mut(name).map(Vec::pop);
+        }
+        result
+    }
+
+    /// Gives a name its meaning from here to the end of its scope.
+    fn declare(&mut self, name: &'t str, local: Local) -> LocalId {
+        let id = self.tree.locals.len() as LocalId;
+        self.tree.locals.push(local);
+        self.scope.entry(name).or_default().push(id);
+        self.declared.push(name);
+        id
     }
 
     /// Attributes, and the filters among them.
@@ -208,9 +239,11 @@ impl<'t> Parser<'t> {
             "subgroup_uniformity" => Some(Filtered::SubgroupUniformity),
             _ => None,
         };
-        if self.take(".") {
+        let is_of_tool = self.take(".");
+        if is_of_tool {
             self.word()?;
         }
+        let rule = rule.filter(|_| !is_of_tool);
         self.take(",");
         self.expect(")")?;
         Ok(rule.map(|rule| Filter { severity, rule }))

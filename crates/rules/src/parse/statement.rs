@@ -3,7 +3,7 @@
 use super::{Kind, Parsed, Parser};
 use crate::behaviour::{Behaviour, of_block, of_conditional_loop, of_loop, of_switch};
 use crate::syntax::{
-    Block, Clause, Declaration, DeclarationKind, ForLoop, Statement, StatementKind,
+    Block, Declaration, DeclarationKind, ExprKind, ForLoop, Local, Statement, StatementKind,
 };
 use crate::{Place, Problem, Rule};
 
@@ -18,10 +18,13 @@ impl<'t> Parser<'t> {
     pub fn block(&mut self) -> Parsed<Block<'t>> {
         let (_, filters) = self.attributes()?;
         let start = self.expect("{")?.start;
-        let mut statements = Vec::new();
-        while !self.is("}") {
-            statements.push(self.deeper(Self::statement)?);
-        }
+        let statements = self.scoped(|parser| {
+            let mut statements = Vec::new();
+            while !parser.is("}") {
+                statements.push(parser.deeper(Self::statement)?);
+            }
+            Ok(statements)
+        })?;
         let end = self.expect("}")?.end;
         Ok(Block { filters, statements, place: Place { start, end } })
     }
@@ -48,9 +51,9 @@ impl<'t> Parser<'t> {
             }
             "if" => return self.conditional(),
             "switch" => return self.switch(),
-            "loop" => return self.endless_loop(),
+            "loop" => return self.scoped(Self::endless_loop),
             "while" => return self.while_loop(),
-            "for" => return self.for_loop(),
+            "for" => return self.scoped(Self::for_loop),
             "break" if self.second().text == "if" => {
                 let message = "`break if` ends a `continuing` block".to_owned();
                 return Err(Problem::new(Rule::Grammar, token.place, message));
@@ -85,9 +88,9 @@ impl<'t> Parser<'t> {
     fn simple(&mut self) -> Parsed<StatementKind<'t>> {
         let token = self.token();
         match token.text {
-            "var" => self.declaration(DeclarationKind::Var).map(StatementKind::Declare),
-            "let" => self.declaration(DeclarationKind::Let).map(StatementKind::Declare),
-            "const" => self.declaration(DeclarationKind::Const).map(StatementKind::Declare),
+            "var" => self.local(DeclarationKind::Var),
+            "let" => self.local(DeclarationKind::Let),
+            "const" => self.local(DeclarationKind::Const),
             "const_assert" => {
                 self.next();
                 self.expression().map(|_| StatementKind::Assert)
@@ -103,12 +106,9 @@ impl<'t> Parser<'t> {
     }
 
     fn assignment(&mut self) -> Parsed<StatementKind<'t>> {
-        let (target, _) = match self.token().text {
-            "*" | "&" => {
-                let target = self.expression()?;
-                (target, ())
-            }
-            _ => (self.postfix()?, ()),
+        let target = match self.token().text {
+            "*" | "&" => self.expression()?,
+            _ => self.postfix()?,
         };
         let token = self.token();
         match token.text {
@@ -122,10 +122,18 @@ impl<'t> Parser<'t> {
                 Ok(StatementKind::Assign { target: Some(target), operator, value })
             }
             _ => match self.tree.kind(target) {
-                crate::syntax::ExprKind::Call { .. } => Ok(StatementKind::Call(target)),
+                ExprKind::Call { .. } => Ok(StatementKind::Call(target)),
                 _ => Err(self.unexpected("=")),
             },
         }
+    }
+
+    fn local(&mut self, kind: DeclarationKind) -> Parsed<StatementKind<'t>> {
+        let declaration = self.declaration(kind)?;
+        let constant = declaration.value.filter(|_| kind == DeclarationKind::Const);
+        let local = Local { of_type: declaration.of_type, constant };
+        let id = self.declare(declaration.name, local);
+        Ok(StatementKind::Declare(id, declaration))
     }
 
     pub fn declaration(&mut self, kind: DeclarationKind) -> Parsed<Declaration<'t>> {
@@ -187,7 +195,7 @@ impl<'t> Parser<'t> {
         Ok((StatementKind::Switch { selector, filters, clauses }, behaviour))
     }
 
-    fn clause(&mut self) -> Parsed<Clause<'t>> {
+    fn clause(&mut self) -> Parsed<Block<'t>> {
         if !self.take("default") {
             self.expect("case")?;
             while !self.is(":") && !self.is("{") && !self.is("@") {
@@ -200,7 +208,7 @@ impl<'t> Parser<'t> {
             }
         }
         self.take(":");
-        Ok(Clause { body: self.block()? })
+        self.block()
     }
 
     fn endless_loop(&mut self) -> Parsed<(StatementKind<'t>, Behaviour)> {
@@ -225,6 +233,12 @@ impl<'t> Parser<'t> {
     fn continuing(&mut self) -> Parsed<Block<'t>> {
         let (_, filters) = self.attributes()?;
         let start = self.expect("{")?.start;
+        let statements = self.scoped(Self::continuing_statements)?;
+        let end = self.expect("}")?.end;
+        Ok(Block { filters, statements, place: Place { start, end } })
+    }
+
+    fn continuing_statements(&mut self) -> Parsed<Vec<Statement<'t>>> {
         let mut statements = Vec::new();
         while !self.is("}") {
             if self.is("break") && self.second().text == "if" {
@@ -239,8 +253,7 @@ impl<'t> Parser<'t> {
             }
             statements.push(self.deeper(Self::statement)?);
         }
-        let end = self.expect("}")?.end;
-        Ok(Block { filters, statements, place: Place { start, end } })
+        Ok(statements)
     }
 
     fn while_loop(&mut self) -> Parsed<(StatementKind<'t>, Behaviour)> {

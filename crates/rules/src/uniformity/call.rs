@@ -22,7 +22,7 @@ impl<'t> Walk<'_, 't> {
         flow: NodeId,
         id: ExprId,
         callee: &'t str,
-        arguments: &'_ [ExprId],
+        arguments: &[ExprId],
     ) -> Flow {
         let (mut after, mut given) = (flow, Vec::with_capacity(arguments.len()));
         for argument in arguments {
@@ -30,18 +30,22 @@ impl<'t> Walk<'_, 't> {
             after = next;
             given.push(one);
         }
+        // Arguments may change what the arguments before them point to.
+        for one in &mut given {
+            one.contents = match one.view {
+                Some(View { root: Root::Slot(slot), .. }) => Some(self.values[slot]),
+                _ => None,
+            };
+        }
         let place = self.module.tree.place(id);
         let call = self.graph.joined(&[after]);
         let result = self.graph.marked(place, Role::Value);
         self.graph.edge(result, call);
-        let is_shadowed = self.local(callee).is_some();
         match self.module.find(callee) {
-            Some(Global::Function(function)) if !is_shadowed => {
+            Some(Global::Function(function)) => {
                 self.call_function(function, place, (call, result), &given);
             }
-            None if !is_shadowed => {
-                self.call_builtin(callee, place, (call, result), arguments, &given);
-            }
+            None => self.call_builtin(callee, place, (call, result), arguments, &given),
             _ => given.iter().for_each(|one| self.graph.edge(result, one.value)),
         }
         (call, result)
@@ -52,14 +56,10 @@ impl<'t> Walk<'_, 't> {
             Ok((after, view)) if view.is_pointer => {
                 let value = self.graph.marked(self.module.tree.place(id), Role::Value);
                 self.graph.edge(value, view.place);
-                let contents = match view.root {
-                    Root::Slot(slot) => Some(self.values[slot]),
-                    Root::Varying | Root::Fixed => None,
-                };
-                (after, Argument { value, view: Some(view), contents })
+                (after, Argument { value, view: Some(view), contents: None })
             }
             Ok((after, view)) => {
-                let value = self.loaded_value(flow, id, view);
+                let value = self.loaded(flow, id, view);
                 (after, Argument { value, view: None, contents: None })
             }
             Err((after, value)) => (after, Argument { value, view: None, contents: None }),
@@ -164,10 +164,5 @@ impl<'t> Walk<'_, 't> {
             }
         }
         output
-    }
-
-    /// The type of the parameter of that name.
-    pub fn texture_parameter(&self, name: &str) -> Option<ExprId> {
-        self.parameter_types.iter().find(|(known, _)| *known == name).map(|(_, id)| *id)
     }
 }

@@ -3,7 +3,7 @@
 use super::graph::{NodeId, Role, VARYING};
 use super::{Global, Local, Root, View, Walk};
 use crate::names::may_vary;
-use crate::syntax::{ExprId, ExprKind};
+use crate::syntax::{ExprId, ExprKind, LocalId};
 
 /// Control flow after an expression, and its value.
 pub type Flow = (NodeId, NodeId);
@@ -49,7 +49,7 @@ impl<'t> Walk<'_, 't> {
     fn found(&mut self, flow: NodeId, id: ExprId) -> Found {
         match self.module.tree.kind(id) {
             ExprKind::Literal(_) => Found::Value((flow, flow)),
-            ExprKind::Name { name, template: _ } => self.name(flow, id, name),
+            ExprKind::Name { name, template: _, local } => self.name(flow, id, name, *local),
             ExprKind::Parenthesized(inner) => self.found(flow, *inner),
             ExprKind::Call { callee, template: _, arguments } => {
                 Found::Value(self.call(flow, id, callee, arguments))
@@ -98,9 +98,9 @@ impl<'t> Walk<'_, 't> {
         }
     }
 
-    fn name(&mut self, flow: NodeId, id: ExprId, name: &'t str) -> Found {
+    fn name(&mut self, flow: NodeId, id: ExprId, name: &'t str, local: Option<LocalId>) -> Found {
         let reference = |root| View { root, is_pointer: false, is_partial: false, place: flow };
-        match self.local(name) {
+        match local.and_then(|local| self.locals.get(&local).copied()) {
             Some(Local::Constant) => return Found::Value((flow, flow)),
             Some(Local::Value(value)) => {
                 let node = self.graph.marked(self.module.tree.place(id), Role::Value);
@@ -131,18 +131,7 @@ impl<'t> Walk<'_, 't> {
 
     /// Whether a texture is one that the shader also writes.
     pub fn is_written_texture(&self, texture: ExprId) -> bool {
-        let ExprKind::Name { name, template: _ } =
-            self.module.tree.kind(self.module.tree.inner(texture))
-        else {
-            return false;
-        };
-        let of_type = match self.texture_parameter(name) {
-            Some(of_type) => Some(of_type),
-            None => match self.module.find(name) {
-                Some(Global::Variable(at)) => self.module.tree.declarations[at].of_type,
-                _ => None,
-            },
-        };
+        let of_type = self.module.declared_type(texture);
         let Some((kind, template)) = of_type.and_then(|id| self.module.type_of(id)) else {
             return false;
         };

@@ -36,6 +36,9 @@ struct Edge {
     next: u32,
 }
 
+/// How many nodes and edges the graph of a function has at most: some 100 MB.
+const MOST: usize = 4 << 20;
+
 const NO_EDGE: u32 = u32::MAX;
 const NO_PLACE: Place = Place { start: 0, end: 0 };
 
@@ -57,18 +60,26 @@ impl Graph {
         graph
     }
 
+    /// Whether nodes or edges are missing, since there would be too many.
+    pub fn is_full(&self) -> bool {
+        self.nodes.len() + self.edges.len() >= MOST
+    }
+
     pub fn node(&mut self) -> NodeId {
         self.marked(NO_PLACE, Role::None)
     }
 
     pub fn marked(&mut self, place: Place, role: Role) -> NodeId {
+        if self.is_full() {
+            return VARYING;
+        }
         self.nodes.push(Node { edge: NO_EDGE, place, role });
         self.reached.push(0);
         self.nodes.len() as NodeId - 1
     }
 
     pub fn edge(&mut self, from: NodeId, to: NodeId) {
-        if from != to && from != VARYING {
+        if from != to && from != VARYING && !self.is_full() {
             let next = self.nodes[from as usize].edge;
             self.edges.push(Edge { to, next });
             self.nodes[from as usize].edge = self.edges.len() as u32 - 1;

@@ -9,8 +9,12 @@ mod graph;
 mod statement;
 mod summary;
 
+use std::collections::{BTreeMap, BTreeSet};
+
+use rustc_hash::FxHashMap;
+
 use super::names::{Global, Module};
-use super::syntax::{ExprId, ExprKind, Filter, Filtered, Function, Severity, Tree};
+use super::syntax::{Filter, Filtered, Function, LocalId, Severity, Tree};
 use super::{Place, Problem, Rule};
 use graph::{Graph, NodeId};
 use summary::Required;
@@ -26,7 +30,7 @@ pub fn check<'s>(
     let mut problems = Vec::new();
     let of = |function: &Function<'_>| known(function.name).cloned();
     let mut summaries: Vec<Option<Summary>> = tree.functions.iter().map(of).collect();
-    for index in callees_first(tree, module) {
+    for index in callees_first(module) {
         if summaries[index].is_none() {
             let (summary, found) = summary::analyse(module, &tree.functions[index], &summaries);
             summaries[index] = Some(summary);
@@ -38,15 +42,9 @@ pub fn check<'s>(
 }
 
 /// The functions, each after those that it calls.
-fn callees_first(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<usize> {
-    let mut calls: Vec<Vec<usize>> = vec![Vec::new(); tree.functions.len()];
-    for expression in &tree.expressions {
-        let ExprKind::Call { callee, .. } = &expression.kind else { continue };
-        let Some(Global::Function(callee)) = module.find(callee) else { continue };
-        if let Some(caller) = tree.enclosing(expression.place) {
-            calls[caller].push(callee);
-        }
-    }
+fn callees_first(module: &Module<'_, '_>) -> Vec<usize> {
+    let calls: Vec<Vec<usize>> =
+        module.uses.iter().map(|uses| uses.functions.iter().copied().collect()).collect();
     let (mut order, mut seen) = (Vec::new(), vec![false; calls.len()]);
     // A stack instead of recursion: chains of calls may be long.
     for start in 0..calls.len() {
@@ -104,12 +102,16 @@ pub enum Local {
 /// What leaves a loop or a switch takes along.
 pub struct Exit {
     is_loop: bool,
-    /// Variables that were declared before it.
-    slots: usize,
-    /// For each of these, the values with which control flow leaves it.
-    values: Vec<Option<NodeId>>,
+    /// How many variables were declared before it.
+    outer: usize,
+    /// Those of them that something within names.
+    slots: Vec<usize>,
+    /// What a `continuing` block names. Some of it is declared within the loop.
+    continuing: BTreeSet<LocalId>,
+    /// The values with which control flow leaves it.
+    left: BTreeMap<usize, NodeId>,
     /// The same at the end of an iteration.
-    continued: Vec<Option<NodeId>>,
+    continued: BTreeMap<usize, NodeId>,
 }
 
 /// The analysis of one function.
@@ -117,9 +119,10 @@ pub struct Walk<'w, 't> {
     module: &'w Module<'t, 'w>,
     summaries: &'w [Option<Summary>],
     graph: Graph,
-    /// Names with the count of names that were there before.
-    locals: Vec<(&'t str, Local)>,
-    /// The value of each variable now. Pointer parameters to the function's memory come first.
+    /// What was declared so far.
+    locals: FxHashMap<LocalId, Local>,
+    /// The value of each variable in scope now. Pointer parameters to the function's memory come
+    /// first.
     values: Vec<NodeId>,
     exits: Vec<Exit>,
     /// Filters by nesting, outermost first.
@@ -129,20 +132,23 @@ pub struct Walk<'w, 't> {
     result: NodeId,
     /// Where contents of pointer parameters leave the function.
     outputs: Vec<NodeId>,
-    /// The types of the function's parameters.
-    parameter_types: Vec<(&'t str, ExprId)>,
     required: Vec<Required>,
 }
 
 impl<'t> Walk<'_, 't> {
-    fn local(&self, name: &str) -> Option<Local> {
-        let mut found = self.locals.iter().rev();
-        found.find(|(known, _)| *known == name).map(|(_, local)| *local)
+    fn declare_variable(&mut self, id: LocalId, value: NodeId) {
+        self.locals.insert(id, Local::Variable(self.values.len()));
+        self.values.push(value);
     }
 
-    fn declare_variable(&mut self, name: &'t str, value: NodeId) {
-        self.locals.push((name, Local::Variable(self.values.len())));
-        self.values.push(value);
+    /// The variable that a name stands for, itself or as a pointer to it.
+    fn slot_of(&self, id: LocalId) -> Option<usize> {
+        match self.locals.get(&id)? {
+            Local::Variable(slot) | Local::Pointer(View { root: Root::Slot(slot), .. }) => {
+                Some(*slot)
+            }
+            Local::Value(_) | Local::Constant | Local::Pointer(_) => None,
+        }
     }
 
     /// Does something with filters that hold only there.

@@ -2,9 +2,11 @@
 
 use super::expression::pointer_parameter;
 use super::graph::{Graph, NodeId, Role, START, VARYING};
-use super::{Function, Local, Module, Place, Problem, Rule, Severity, View, Walk};
+use super::{Function, Local, Module, Place, Problem, Rule, Severity, Walk};
 use crate::behaviour::{Behaviour, of_block};
-use crate::syntax::{Attribute, ExprId, ExprKind, Member};
+use crate::names::stage_of;
+use crate::syntax::{Attribute, ExprKind, LocalId, Member};
+use rustc_hash::FxHashMap;
 
 /// A built-in function that asks for something uniform.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -78,23 +80,20 @@ pub fn analyse(
     function: &Function<'_>,
     summaries: &[Option<Summary>],
 ) -> (Summary, Vec<Problem>) {
-    let stage = function.attributes.iter().find_map(|attribute| {
-        ["vertex", "fragment", "compute"].into_iter().find(|stage| attribute.name == *stage)
-    });
+    let stage = stage_of(function);
     let mut graph = Graph::new();
     let result = graph.node();
     let mut walk = Walk {
         module,
         summaries,
         graph,
-        locals: Vec::new(),
+        locals: FxHashMap::default(),
         values: Vec::new(),
         exits: Vec::new(),
         filters: module.tree.filters.clone(),
         pointers: Vec::new(),
         result,
         outputs: Vec::new(),
-        parameter_types: Vec::new(),
         required: Vec::new(),
     };
     walk.filters.extend(function.filters.iter().cloned());
@@ -102,11 +101,19 @@ pub fn analyse(
         .parameters
         .iter()
         .enumerate()
-        .map(|(at, parameter)| walk.parameter(at, parameter, stage))
+        .map(|(at, parameter)| {
+            let id = function.first_local + at as LocalId;
+            walk.parameter((at, id), parameter, stage)
+        })
         .collect();
     walk.block(START, &function.body);
     if of_block(&function.body).has(Behaviour::NEXT) {
         walk.output_contents();
+    }
+    if walk.graph.is_full() {
+        let message = format!("`{}` is too large to find out what is uniform in it", function.name);
+        let problem = Problem::new(Rule::Depth, function.place, message);
+        return (walk.summarise(&parameters).0, vec![problem]);
     }
     walk.summarise(&parameters)
 }
@@ -114,29 +121,27 @@ pub fn analyse(
 impl<'t> Walk<'_, 't> {
     fn parameter(
         &mut self,
-        at: usize,
+        (at, id): (usize, LocalId),
         parameter: &Member<'t>,
         stage: Option<&str>,
     ) -> ParameterNodes {
-        let name = parameter.name;
         let value = self.graph.marked(parameter.place, Role::Value);
-        self.parameter_types.push((name, parameter.of_type));
         if let Some(stage) = stage {
             let target = if self.is_uniform_input(parameter, stage) { START } else { VARYING };
             self.graph.edge(value, target);
-            self.locals.push((name, Local::Value(value)));
+            self.locals.insert(id, Local::Value(value));
             return ParameterNodes { value, contents: None };
         }
         let pointer = self.module.type_of(parameter.of_type).filter(|(kind, _)| *kind == "ptr");
         let Some((_, template)) = pointer else {
-            self.locals.push((name, Local::Value(value)));
+            self.locals.insert(id, Local::Value(value));
             return ParameterNodes { value, contents: None };
         };
         let space = self.module.template_word(template, 0);
         let access = self.module.template_word(template, 2);
         let slot = self.values.len();
         let view = pointer_parameter(space, access, slot, value);
-        self.locals.push((name, Local::Pointer(view)));
+        self.locals.insert(id, Local::Pointer(view));
         if space != Some("function") {
             return ParameterNodes { value, contents: None };
         }
@@ -162,8 +167,7 @@ impl<'t> Walk<'_, 't> {
     fn is_uniform_builtin(&self, attributes: &[Attribute<'t>], stage: &str) -> bool {
         let builtin = attributes.iter().find(|attribute| attribute.name == "builtin");
         let name = builtin.and_then(|attribute| attribute.arguments.first());
-        let Some(ExprKind::Name { name, template: _ }) = name.map(|id| self.module.tree.kind(*id))
-        else {
+        let Some(ExprKind::Name { name, .. }) = name.map(|id| self.module.tree.kind(*id)) else {
             return false;
         };
         match *name {
@@ -175,11 +179,6 @@ impl<'t> Walk<'_, 't> {
 
     pub fn require(&mut self, node: NodeId, requirement: Requirement, call: Place) {
         self.required.push(Required { node, requirement, call });
-    }
-
-    /// The value of memory that [`Self::view`] found.
-    pub fn loaded_value(&mut self, flow: NodeId, id: ExprId, view: View) -> NodeId {
-        self.loaded(flow, id, view)
     }
 
     fn summarise(mut self, parameters: &[ParameterNodes]) -> (Summary, Vec<Problem>) {
