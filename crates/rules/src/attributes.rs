@@ -38,8 +38,7 @@ fn misplaced_of_declaration(declaration: &Declaration<'_>) -> Option<Problem> {
 }
 
 fn misplaced_of_function(function: &Function<'_>) -> Option<Problem> {
-    const ENTRY: [&str; 6] =
-        ["vertex", "fragment", "compute", "workgroup_size", "must_use", "early_depth_test"];
+    const ENTRY: [&str; 5] = ["vertex", "fragment", "compute", "workgroup_size", "must_use"];
     let sizes = function.attributes.iter().find(|attribute| attribute.name == "workgroup_size");
     match sizes {
         Some(sizes) if stage_of(function) != Some("compute") => {

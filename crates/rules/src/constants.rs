@@ -1,6 +1,6 @@
 //! Built-in functions with constant arguments that have no value.
 
-use super::names::{Global, Module};
+use super::names::{Global, Module, is_of_subgroups};
 use super::syntax::{DeclarationKind, ExprId, ExprKind, Tree};
 use super::{Problem, Rule};
 
@@ -12,8 +12,7 @@ pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
         if module.find(callee).is_some() {
             continue;
         }
-        let of_subgroup = callee.starts_with("subgroup") || callee.starts_with("quadSwap");
-        if of_subgroup && !has_subgroups {
+        if is_of_subgroups(callee) && !has_subgroups {
             let message = format!("`{callee}` needs `enable subgroups;`");
             problems.push(Problem::new(Rule::Grammar, expression.place, message));
         }

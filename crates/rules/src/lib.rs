@@ -96,7 +96,8 @@ pub fn summarise<'s>(
 /// The text with blanks for the filters at its statements, which naga cannot read; `None` where it
 /// has none. It needs a large stack.
 pub fn without_statement_filters(text: &str) -> Option<String> {
-    if !text.contains("@diagnostic") {
+    // Blanks and comments may stand between the two.
+    if !(text.contains('@') && text.contains("diagnostic")) {
         return None;
     }
     let (tree, _) = parse::parse(text)?.ok()?;

@@ -17,7 +17,7 @@ pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
         }
         if let ExprKind::Name { name: "atomic", template, local: _ } = &expression.kind {
             let of = template.first().and_then(|id| module.type_of(*id));
-            if !of.is_some_and(|(name, _)| matches!(name, "i32" | "u32" | "i64" | "u64")) {
+            if !of.is_some_and(|(name, _)| matches!(name, "i32" | "u32")) {
                 let message = "`atomic` takes `i32` or `u32`".to_owned();
                 problems.push(Problem::new(Rule::Memory, expression.place, message));
             }

@@ -149,6 +149,11 @@ pub fn stage_of(function: &Function<'_>) -> Option<&'static str> {
     ["vertex", "fragment", "compute"].into_iter().find(|stage| has(stage))
 }
 
+/// Whether a built-in function belongs to the extension `subgroups`.
+pub fn is_of_subgroups(name: &str) -> bool {
+    name.starts_with("subgroup") || name.starts_with("quad")
+}
+
 /// Whether memory of an address space and an access mode can change.
 pub fn may_vary(space: Option<&str>, access: Option<&str>) -> bool {
     match space {

@@ -221,7 +221,7 @@ impl<'t> Parser<'t> {
         }
         match self.token().kind {
             Kind::TemplateEnd => self.next(),
-            _ => return Err(self.unexpected(">")),
+            _ => return Err(self.missing(">")),
         };
         Ok(found)
     }

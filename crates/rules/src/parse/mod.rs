@@ -85,7 +85,7 @@ impl<'t> Parser<'t> {
         let place = self.token().place;
         match self.take(text) {
             true => Ok(place),
-            false => Err(self.unexpected(text)),
+            false => Err(self.missing(text)),
         }
     }
 
@@ -96,13 +96,18 @@ impl<'t> Parser<'t> {
         }
     }
 
+    /// An error that names the mark or the keyword that must stand here.
+    fn missing(&self, mark: &str) -> Problem {
+        self.unexpected(&format!("`{mark}`"))
+    }
+
     fn unexpected(&self, wanted: &str) -> Problem {
         let token = self.token();
         let found = match token.kind {
             Kind::End => "the end of the text".to_owned(),
             _ => format!("`{}`", token.text),
         };
-        Problem::new(Rule::Grammar, token.place, format!("expected `{wanted}`, found {found}"))
+        Problem::new(Rule::Grammar, token.place, format!("expected {wanted}, found {found}"))
     }
 
     /// Where the token before the next one ends.

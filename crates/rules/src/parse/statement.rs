@@ -123,7 +123,7 @@ impl<'t> Parser<'t> {
             }
             _ => match self.tree.kind(target) {
                 ExprKind::Call { .. } => Ok(StatementKind::Call(target)),
-                _ => Err(self.unexpected("=")),
+                _ => Err(self.missing("=")),
             },
         }
     }

@@ -1,5 +1,7 @@
 //! The built-in functions that ask for uniform control flow, or whose results vary.
 
+use crate::names::is_of_subgroups;
+
 /// What a built-in function asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Demand {
@@ -45,7 +47,7 @@ pub fn find(name: &str) -> Builtin {
         "subgroupShuffleUp" | "subgroupShuffleDown" | "subgroupShuffleXor" => {
             Builtin { uniform_argument: Some(1), ..of(Demand::Subgroup, true) }
         }
-        _ if name.starts_with("subgroup") || name.starts_with("quad") => of(Demand::Subgroup, true),
+        _ if is_of_subgroups(name) => of(Demand::Subgroup, true),
         _ if name.starts_with("atomic") => of(Demand::Nothing, true),
         _ => PLAIN,
     }
