@@ -52,7 +52,7 @@ const FOLDERS: &[Writer] = &[
     writer("catalogue", &["catalogue", "-o", "OUT", "--without-pictures"]),
     writer("report", &["check", "half.toml", "--report", "OUT"]),
     Writer {
-        files: &["README.md", "hpg_4_spot.png"],
+        files: &["index.html", "hpg_4_spot.png"],
         ..writer(
             "gallery",
             &["render", "--all", "--executor", "eval", "--size", "8x8", "-o", "OUT"],
