@@ -9,6 +9,7 @@ mod glsl_names;
 mod incremental;
 mod lines;
 mod members;
+mod published;
 mod session;
 mod streams;
 
@@ -28,6 +29,8 @@ type Run = fn() -> Outcome;
 
 const TESTS: &[(&str, Run)] = &[
     ("diagnostics", diagnostics),
+    ("shows_what_lint_reports", published::as_lint),
+    ("shows_what_is_broken_elsewhere", published::elsewhere),
     ("hover", hover),
     ("definition", definition),
     ("references_and_rename", references_and_rename),
@@ -82,8 +85,8 @@ fn codes(found: &[Value]) -> Vec<&str> {
     found.iter().filter_map(|found| found["code"].as_str()).collect()
 }
 
-/// Errors of syntax, names and types are reported at the author's places, for the permutation that is
-/// shown. A file that is closed has none.
+/// Errors of syntax, names and types are reported at the author's places, for the permutation that
+/// is shown. A file that is closed has none.
 fn diagnostics() -> Outcome {
     let mut session = Session::new(MAIN)?;
     let first = session.diagnostics("main.wesl")?;
@@ -255,8 +258,8 @@ fn inactive() -> Outcome {
     expect(lines == [3, 12, 15, 16], &published)?;
     let document = json!({ "textDocument": { "uri": session.uri("main.wesl")? } });
     let tokens = session.ask("textDocument/semanticTokens/full", document.clone())?;
-    // The inactive lines are four of a function, three of a block and two statements. Each token has
-    // five numbers.
+    // The inactive lines are four of a function, three of a block and two statements. Each token
+    // has five numbers.
     expect(tokens["data"].as_array().map(Vec::len) == Some(9 * 5), &tokens)?;
     let hints = session.ask("textDocument/inlayHint", document)?;
     expect(hints.as_array().map(Vec::len) == Some(4), &hints)

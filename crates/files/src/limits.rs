@@ -202,6 +202,9 @@ limits! {
     PACKAGES: usize = 1000, Count, "packages in `wesl.toml`", "time", "`wesl-toml`";
     MESSAGE_BYTES: u64 = 64 << 20, Bytes, "bytes of one message to the language server", "memory",
         "the message is skipped, and answered with an error";
+    EDITOR_FILES: usize = 256, Count,
+        "modules of a package whose diagnostics editors get while they are closed", "time",
+        "no error: the language server checks only open files then, and `lint` checks all";
     EDIT_STEPS: u64 = 1 << 29, Count,
         "bytes of a document that the edits of one message read or move", "time",
         "the document is closed, and the editor shows a message";

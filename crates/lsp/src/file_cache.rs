@@ -1,5 +1,5 @@
-//! A cache of the files on the disk. A text is valid while its file is as it was when it was read. A
-//! keystroke asks for every file of a package, and asking the system whether a file has changed
+//! A cache of the files on the disk. A text is valid while its file is as it was when it was read.
+//! A keystroke asks for every file of a package, and asking the system whether a file has changed
 //! takes a fifth of reading it.
 
 use std::collections::HashMap;

@@ -20,6 +20,7 @@ mod members;
 mod navigate;
 mod package;
 mod place;
+mod publish;
 mod report;
 pub mod wire;
 
@@ -68,6 +69,9 @@ pub struct LanguageServer {
     whole: Option<(PathBuf, Arc<glsl::Whole>)>,
     /// Documents to analyse, the one that was edited last first.
     changed: VecDeque<PathBuf>,
+    /// Modules on the disk to analyse when no document waits.
+    closed: VecDeque<PathBuf>,
+    findings: publish::Findings,
     items: Option<Arc<Vec<catalogue::CatalogueModule>>>,
     library: LibraryPaths,
     files: Embedded,
@@ -109,6 +113,8 @@ impl LanguageServer {
             modules: None,
             whole: None,
             changed: VecDeque::new(),
+            closed: VecDeque::new(),
+            findings: publish::Findings::default(),
             items: None,
             library,
             files,
@@ -176,8 +182,12 @@ impl LanguageServer {
                 self.documents.remove(&path);
                 self.forget(None);
                 self.changed.push_front(path);
+                self.check_closed();
             }
-            ("textDocument/didSave" | "workspace/didChangeWatchedFiles", _) => self.forget(None),
+            ("textDocument/didSave" | "workspace/didChangeWatchedFiles", _) => {
+                self.forget(None);
+                self.check_closed();
+            }
             _ => {}
         }
         Vec::new()
@@ -185,9 +195,13 @@ impl LanguageServer {
 
     fn open(&mut self, path: PathBuf, text: String, version: Value) {
         let (root, below) = package_of_file(&path);
+        let is_new = !self.documents.values().any(|document| document.root == root);
         let document = Document { text, version, root, path: below };
         self.documents.insert(path.clone(), document);
         self.forget(Some(&path));
+        if is_new {
+            self.check_closed();
+        }
     }
 
     fn change(&mut self, path: &Path, parameters: &Value, version: Value) -> Vec<Value> {
@@ -228,6 +242,12 @@ impl LanguageServer {
         vec![notification_message("window/showMessage", json!({ "type": 1, "message": words }))]
     }
 
+    /// Has all closed modules of open packages analysed, and whatever is shown of other packages
+    /// cleared.
+    fn check_closed(&mut self) {
+        self.closed = self.left_files().into_iter().chain(self.closed_modules()).collect();
+    }
+
     /// Drops cached results after a change. Every open document is analysed again, the edited one
     /// first.
     fn forget(&mut self, edited: Option<&Path>) {
@@ -241,58 +261,18 @@ impl LanguageServer {
         self.kept.get_mut().retain(|root, _| is_open(root));
     }
 
-    /// Whether every document was analysed since it changed.
+    /// Whether every document was analysed since it changed, and the other modules of its package
+    /// since something was saved.
     pub fn is_idle(&self) -> bool {
-        self.changed.is_empty()
+        self.changed.is_empty() && self.closed.is_empty()
     }
 
-    /// The message with the diagnostics of the next changed document. To be called when no message
-    /// waits.
+    /// The messages with the diagnostics of the next changed document, or else of a closed module.
+    /// To be called when no message waits.
     pub fn look(&mut self) -> Vec<Value> {
-        let next = self.changed.pop_front();
-        next.and_then(|path| self.look_at(&path)).into_iter().collect()
-    }
-
-    fn look_at(&self, file: &Path) -> Option<Value> {
-        let uri = place::file_address(file);
-        let Some(document) = self.documents.get(file) else {
-            // The document was closed: its diagnostics are cleared.
-            let parameters = json!({ "uri": uri, "diagnostics": [] });
-            return Some(notification_message("textDocument/publishDiagnostics", parameters));
-        };
-        let found = self.problems(document, &uri).unwrap_or_default();
-        let parameters = json!({ "uri": uri, "version": document.version, "diagnostics": found });
-        Some(notification_message("textDocument/publishDiagnostics", parameters))
-    }
-
-    fn problems(&self, document: &Document, uri: &str) -> Option<Vec<Value>> {
-        let shown = |sources: &_, found: &[_], note: Option<&str>| {
-            let here = found.iter().filter(|found: &&lamplight_diagnostic::Diagnostic| {
-                let place = found.labels.first().map(|label| label.span.source);
-                let library = &*self.library;
-                place.and_then(|id| report::address_of(sources, id, library)).as_deref()
-                    == Some(uri)
-            });
-            let to_json = |found| report::diagnostic_json(sources, found, note, &*self.library);
-            here.filter_map(to_json).collect::<Vec<_>>()
-        };
-        let mut opened = match self.open_package(&document.root) {
-            Ok(opened) => opened,
-            Err((sources, problems)) => return Some(shown(&sources, &problems, None)),
-        };
-        if !look::is_module(&document.path) {
-            return Some(shown(&opened.sources, &opened.problems, None));
-        }
-        let (settings, note) =
-            look::module_settings(&opened, &document.path, &self.choice(&document.root));
-        match self.graph(&mut opened, &document.path) {
-            Ok(graph) => {
-                let found = look::module_problems(&graph, &settings, &document.path);
-                let mut diagnostics = shown(&opened.sources, &found, Some(&note));
-                diagnostics.extend(inactive::inactive_hints(&document.text, &graph, &settings));
-                Some(diagnostics)
-            }
-            Err(found) => Some(shown(&opened.sources, &found, None)),
+        match self.changed.pop_front().or_else(|| self.closed.pop_front()) {
+            Some(path) => self.publish(&path),
+            None => Vec::new(),
         }
     }
 

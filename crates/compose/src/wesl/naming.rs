@@ -194,17 +194,18 @@ fn node_of(thing: Thing) -> Option<u32> {
 }
 
 fn name_conflict(graph: &Graph, thing: Thing, other: Thing) -> Diagnostic {
+    if let (Thing::Item { node, item: again }, Thing::Item { node: same, item: first }) =
+        (thing, other)
+        && node == same
+    {
+        let module = &graph.nodes[node as usize];
+        return module.declared_twice(&graph.names, again as usize, first as usize);
+    }
     let name = graph.names.text(name_of(graph, thing));
-    let (code, message) = match node_of(thing) == node_of(other) {
-        true => (codes::DUPLICATE_ITEM, format!("`{name}` is declared twice")),
-        false => (codes::NAME_CONFLICT, format!("two declarations must both be named `{name}`")),
-    };
-    label_declaration(
-        graph,
-        other,
-        label_declaration(graph, thing, Diagnostic::error(code, message), "this one"),
-        "and this one",
-    )
+    let message = format!("two declarations must both be named `{name}`");
+    let error = Diagnostic::error(codes::NAME_CONFLICT, message);
+    let error = label_declaration(graph, thing, error, "this one");
+    label_declaration(graph, other, error, "and this one")
 }
 
 fn captured_name(graph: &Graph, thing: Thing) -> Diagnostic {

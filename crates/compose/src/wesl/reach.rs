@@ -280,17 +280,8 @@ impl ReachWalk<'_, '_, '_> {
                 continue;
             }
             if let Some(first) = chosen {
-                let message = format!(
-                    "`{}` is declared twice in `{}`",
-                    self.graph.names.text(name),
-                    here.label
-                );
-                let first: &Item = &here.module.items[first as usize];
-                self.evaluator.errors.push(
-                    Diagnostic::error(codes::DUPLICATE_ITEM, message)
-                        .at(here.module.span(item.name_range.clone()), "declared again")
-                        .at(here.module.span(first.name_range.clone()), "declared first"),
-                );
+                let error = here.declared_twice(&self.graph.names, *index as usize, first as usize);
+                self.evaluator.errors.push(error);
                 break;
             }
             chosen = Some(*index);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use lamplight_diagnostic::source::{Embedded, SourceId, Span};
-use lamplight_diagnostic::{Diagnostic, Diagnostics};
+use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_syntax::wesl::{ConditionId, Expression, Name, Names, PlacedModule};
 
 /// The most imports that a diagnostic lists of the chain that led to its file.
@@ -115,6 +115,17 @@ pub struct ModuleNode {
     pub importer: Option<Importer>,
     /// Offsets of this module's items, conditions and bindings in the tables over all modules.
     pub bases: Bases,
+}
+
+impl ModuleNode {
+    /// The error about an item whose name an earlier one has, by their indices.
+    pub fn declared_twice(&self, names: &Names, again: usize, first: usize) -> Diagnostic {
+        let [again, first] = [again, first].map(|index| &self.module.items[index]);
+        let message = format!("`{}` is declared twice in `{}`", names.text(again.name), self.label);
+        Diagnostic::error(codes::DUPLICATE_ITEM, message)
+            .at(self.module.span(again.name_range.clone()), "declared again")
+            .at(self.module.span(first.name_range.clone()), "declared first")
+    }
 }
 
 /// The import or inline path that led to a module.

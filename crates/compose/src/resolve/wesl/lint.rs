@@ -78,12 +78,7 @@ pub fn report_duplicates(loader: &mut Loader<'_>, node: u32) {
     for (index, item) in here.module.items.iter().enumerate() {
         let earlier = *first.entry((item.name, item.condition)).or_insert(index);
         if earlier != index && item.name != Name::UNDERSCORE {
-            let earlier = here.module.items[earlier].name_range.clone();
-            let message =
-                format!("`{}` is declared twice in `{}`", loader.names.text(item.name), here.label);
-            let error = Diagnostic::error(codes::DUPLICATE_ITEM, message)
-                .at(here.module.span(item.name_range.clone()), "declared again")
-                .at(here.module.span(earlier), "declared first");
+            let error = here.declared_twice(&loader.names, index, earlier);
             found.push((item.condition, error));
         }
     }
