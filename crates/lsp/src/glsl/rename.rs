@@ -8,10 +8,10 @@ use serde_json::Value;
 use super::references::{PLACES, RequestedSymbol, requested_symbol};
 use super::text_of;
 use super::units::{Meant, NamePlace, Units, Use};
-use super::words::is_reserved;
 use crate::place::Lines;
 use crate::{LanguageServer, report};
 use lamplight_compose::resolve::glsl::IncludeTarget;
+use lamplight_syntax::glsl::words::is_reserved;
 use lamplight_syntax::glsl::{Directive, FilePart, Symbol};
 use lamplight_syntax::words::has_word;
 

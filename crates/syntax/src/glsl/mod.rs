@@ -4,6 +4,7 @@
 
 mod directive;
 mod lexer;
+pub mod words;
 
 use std::ops::Range;
 use std::sync::Arc;
