@@ -97,6 +97,6 @@ void main() {
     vec4 surface = vec4(0.5 + 0.5 * octahedral_encode(normal), material / 255.0, 1.0);
     out_color = base;
     out_surface = surface;
-    out_factors = vec4(metal_and_roughness(uint(min(material, 4294967040.0))), 0.0, 1.0);
+    out_factors = vec4(metal_and_roughness(uint(clamp(material, 0.0, 4294967040.0))), 0.0, 1.0);
 #endif
 }

@@ -308,8 +308,9 @@ pub enum ExpressionKind {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Meaning {
     Unknown,
-    /// A parameter or a variable of the function, by the number of its declaration.
-    Local(u32),
+    /// A parameter or a variable of the function, by the numbers of the declarations that it may be,
+    /// each under its condition.
+    Local(Vec<u32>),
     Item(ItemPath),
 }
 
@@ -474,8 +475,10 @@ pub enum Count {
     Fixed(u32),
     /// The value of an axis.
     Axis(String),
-    /// A constant of the module, as it is named there.
-    Constant(String),
+    /// A constant, as the module names it.
+    Named(String),
+    /// The constant that such a name means.
+    Constant(ItemPath),
     /// As many as the buffer holds.
     Runtime,
 }
@@ -535,7 +538,7 @@ impl Type {
         }
     }
 
-    /// Whether a number in it has no size yet.
+    /// Whether it is of abstract numbers.
     pub fn is_abstract(&self) -> bool {
         match self {
             Self::Array(element, _) => element.is_abstract(),
@@ -573,8 +576,11 @@ impl fmt::Display for Type {
             Self::Array(element, Count::Fixed(count)) => {
                 write!(formatter, "array<{element}, {count}>")
             }
-            Self::Array(element, Count::Axis(name) | Count::Constant(name)) => {
+            Self::Array(element, Count::Axis(name) | Count::Named(name)) => {
                 write!(formatter, "array<{element}, {name}>")
+            }
+            Self::Array(element, Count::Constant(path)) => {
+                write!(formatter, "array<{element}, {}>", path.name)
             }
             Self::Array(element, Count::Runtime) => write!(formatter, "array<{element}>"),
             Self::Named(name) => formatter.write_str(name),
@@ -615,6 +621,30 @@ pub fn whole_conditions<T>(nodes: &[Node<T>]) -> Vec<Condition> {
         all.push(own);
     }
     all
+}
+
+/// Some of the siblings. Those whose `@if` is not complete without the others get whole conditions.
+pub fn kept_siblings<T: Clone>(nodes: &[Node<T>], keep: impl Fn(&Node<T>) -> bool) -> Vec<Node<T>> {
+    let conditions = whole_conditions(nodes);
+    let is_start = |at: &usize| !matches!(nodes[*at].branch, Some(Branch::Elif(_) | Branch::Else));
+    let mut kept = Vec::new();
+    let mut first = 0;
+    while first < nodes.len() {
+        let end = (first + 1..nodes.len()).find(is_start).unwrap_or(nodes.len());
+        let is_whole = nodes[first..end].iter().all(&keep);
+        for at in (first..end).filter(|at| keep(&nodes[*at])) {
+            let mut node = nodes[at].clone();
+            if !is_whole && node.branch.is_some() {
+                node.branch = match conditions[at].clone() {
+                    Condition::Literal(true) => None,
+                    condition => Some(Branch::If(condition)),
+                };
+            }
+            kept.push(node);
+        }
+        first = end;
+    }
+    kept
 }
 
 impl Expression {

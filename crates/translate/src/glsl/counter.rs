@@ -42,7 +42,7 @@ pub fn counter_of(
 impl Expression {
     /// Whether it is a local by itself.
     pub fn kind_is_local(&self, number: u32) -> bool {
-        matches!(&self.kind, ExpressionKind::Name(_, Meaning::Local(found)) if *found == number)
+        matches!(&self.kind, ExpressionKind::Name(_, Meaning::Local(found)) if found.contains(&number))
     }
 }
 

@@ -6,11 +6,13 @@ use lamplight_diagnostic::Diagnostic;
 use lamplight_diagnostic::source::Span;
 
 use super::facts::{Facts, StageField};
+use super::names::Names;
+use super::place::{Pairs, Samplers};
 use super::range::{Counters, range_of};
-use super::words::{glsl_name, item_name, macro_name, type_name};
+use super::words::macro_name;
 use crate::tree::{Argument, Binary, Callee, Expression, ExpressionKind, LineBreak, Meaning};
 use crate::tree::{Number, NumberValue, Scalar, Type, Unary};
-use crate::types::{Folded, GlobalKind, Globals, fold};
+use crate::types::{Folded, Globals, fold};
 use crate::wesl::untranslated;
 
 /// How tightly things bind. Binary operators have the numbers of [`crate::tree::BINARY`].
@@ -22,23 +24,28 @@ pub const POSTFIX: u8 = 19;
 pub struct Writer<'a> {
     pub globals: &'a Globals,
     pub facts: &'a Facts,
+    pub names: &'a Names,
     /// Whether pairs of a texture and a sampler are written with the library's macros.
     pub has_macros: bool,
     /// What the parameters and locals are, by where they are declared.
     pub locals: BTreeMap<u32, LocalRole>,
     pub counters: Counters,
-    /// The samplers that textures of the module are read with, by name.
-    pub samplers: &'a BTreeMap<String, String>,
+    /// The samplers that textures of the module are read with.
+    pub samplers: &'a Samplers,
+    /// The same for parameters.
+    pub pairs: Pairs,
 }
 
 /// What a parameter or a local has become.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum LocalRole {
     Named(String),
     /// An input of the stage, as it is written.
     Input(String),
-    /// What a stage takes or returns: its members are variables of the stage.
+    /// What a stage takes: its members are variables of the stage.
     Stage(Vec<StageField>),
+    /// What a stage returns.
+    Outputs(Vec<StageField>),
 }
 
 /// A text, and how tightly its outermost operator binds.
@@ -82,10 +89,10 @@ impl Writer<'_> {
             ExpressionKind::Parenthesised(inner) => {
                 Ok(Bound::primary(format!("({})", self.whole(inner, indent)?)))
             }
-            ExpressionKind::Convert(inner) => self.converted(inner, &value.ty),
+            ExpressionKind::Convert(inner) => self.converted(inner, &value.ty, indent),
             ExpressionKind::Unary(operator, inner) => self.unary(*operator, inner, indent),
             ExpressionKind::Binary { operator, left, right, line_break } => {
-                self.binary(*operator, left, right, *line_break, value, indent)
+                self.binary(*operator, left, right, *line_break, indent)
             }
             ExpressionKind::Member(object, member) => self.member(object, member, indent),
             ExpressionKind::Index(object, index) => {
@@ -100,60 +107,50 @@ impl Writer<'_> {
 
     fn name(&self, name: &str, meaning: &Meaning, span: Span) -> Written {
         match meaning {
-            Meaning::Local(number) => match self.locals.get(number) {
+            Meaning::Local(numbers) => match self.role(numbers) {
                 Some(LocalRole::Named(name)) => Ok(Bound::primary(name)),
                 Some(LocalRole::Input(text)) => Ok(Bound(text.clone(), POSTFIX)),
-                Some(LocalRole::Stage(_)) => {
+                Some(LocalRole::Stage(_) | LocalRole::Outputs(_)) => {
                     Err(untranslated(span, "the whole of what a stage takes or returns"))
                 }
-                None => Ok(Bound::primary(glsl_name(name))),
+                None => Err(untranslated(span, format!("`{name}`"))),
             },
-            Meaning::Item(path) => Ok(Bound::primary(item_name(path))),
+            Meaning::Item(path) => Ok(Bound::primary(self.names.item(path))),
             Meaning::Unknown => Err(untranslated(span, format!("`{name}`"))),
         }
     }
 
-    /// The value of an axis, or of a constant that has no size, with another type.
-    fn converted(&self, inner: &Expression, ty: &Type) -> Written {
-        let Some(scalar) = ty.scalar() else {
-            return Err(untranslated(inner.span, format!("a conversion to {ty}")));
-        };
-        match &inner.kind {
-            ExpressionKind::Axis(axis) => {
-                let axis = macro_name(axis);
-                Ok(match scalar {
-                    Scalar::U32 => Bound(format!("uint({axis})"), POSTFIX),
-                    Scalar::F32 => Bound(format!("float({axis})"), POSTFIX),
-                    _ => Bound::primary(axis),
-                })
-            }
-            ExpressionKind::Name(_, Meaning::Item(path)) => {
-                let declared =
-                    self.globals.items(path).iter().find_map(|global| match &global.kind {
-                        GlobalKind::Constant { ty, .. } => ty.scalar(),
-                        _ => None,
-                    });
-                let is_same = matches!(
-                    (declared, scalar),
-                    (Some(Scalar::AbstractInteger), Scalar::I32)
-                        | (Some(Scalar::AbstractFloat), Scalar::F32)
-                );
-                if is_same {
-                    return Ok(Bound::primary(item_name(path)));
-                }
-                let refused = || untranslated(inner.span, "a constant without a size");
-                let value = match fold(inner, self.globals).ok_or_else(refused)? {
-                    Folded::Integer(value) => NumberValue::Integer(value),
-                    Folded::Float(value) => NumberValue::Float(value),
-                };
-                let text = match value {
-                    NumberValue::Integer(value) => value.to_string(),
-                    NumberValue::Float(value) => format!("{:?}", value as f32),
-                };
-                Ok(number_text(&Number { text, value }, ty))
-            }
-            _ => Err(untranslated(inner.span, "a constant without a size")),
+    /// What a local is; nothing if that depends on conditions.
+    pub fn role(&self, numbers: &[u32]) -> Option<&LocalRole> {
+        let mut roles = numbers.iter().map(|number| self.locals.get(number));
+        let first = roles.next()??;
+        roles.all(|other| other == Some(first)).then_some(first)
+    }
+
+    /// A value of another type: of an axis, of an abstract constant, or of integers that an axis
+    /// decides.
+    fn converted(&self, inner: &Expression, ty: &Type, indent: usize) -> Written {
+        let same = matches!(
+            (inner.ty.scalar(), ty.scalar()),
+            (Some(Scalar::AbstractInteger | Scalar::I32), Some(Scalar::I32))
+                | (Some(Scalar::AbstractFloat), Some(Scalar::F32))
+        );
+        if same {
+            return self.bound(inner, indent);
         }
+        if let (ExpressionKind::Name(..), Some(folded)) = (&inner.kind, fold(inner, self.globals)) {
+            let value = match folded {
+                Folded::Integer(value) => NumberValue::Integer(value),
+                Folded::Float(value) => NumberValue::Float(value),
+            };
+            let text = match value {
+                NumberValue::Integer(value) => value.to_string(),
+                NumberValue::Float(value) => format!("{:?}", value as f32),
+            };
+            return Ok(number_text(&Number { text, value }, ty));
+        }
+        let name = self.names.type_name(ty, inner.span)?;
+        Ok(Bound(format!("{name}({})", self.whole(inner, indent)?), POSTFIX))
     }
 
     fn unary(&self, operator: Unary, inner: &Expression, indent: usize) -> Written {
@@ -176,13 +173,15 @@ impl Writer<'_> {
 
     fn member(&self, object: &Expression, member: &str, indent: usize) -> Written {
         if let ExpressionKind::Name(_, Meaning::Local(number)) = &object.bare().kind
-            && let Some(LocalRole::Stage(fields)) = self.locals.get(number)
+            && let Some(LocalRole::Stage(fields) | LocalRole::Outputs(fields)) = self.role(number)
         {
             return stage_member(fields, member, object.span);
         }
-        let is_structure = matches!(followed(&object.ty), Type::Structure(_));
+        let member = match followed(&object.ty) {
+            Type::Structure(path) => self.names.member(path, member),
+            _ => member,
+        };
         let object = self.operand(object, POSTFIX, indent)?;
-        let member = if is_structure { glsl_name(member) } else { member.to_owned() };
         Ok(Bound(format!("{object}.{member}"), POSTFIX))
     }
 
@@ -203,7 +202,7 @@ impl Writer<'_> {
                     .collect();
                 self.check_stage_arguments(arguments)?;
                 let texts = self.paired_arguments(&kept, indent)?;
-                Ok(Bound(listed(&item_name(path), &texts, is_broken, indent), POSTFIX))
+                Ok(Bound(listed(self.names.item(path), &texts, is_broken, indent), POSTFIX))
             }
             Callee::Construct(ty) => self.construct(ty, arguments, is_broken, value.span, indent),
             Callee::Bitcast(target) => {
@@ -226,7 +225,7 @@ impl Writer<'_> {
             }
             let is_whole = match &value.kind {
                 ExpressionKind::Name(_, Meaning::Local(number)) => {
-                    matches!(self.locals.get(number), Some(LocalRole::Stage(_)))
+                    matches!(self.role(number), Some(LocalRole::Stage(_)))
                 }
                 _ => false,
             };
@@ -248,7 +247,7 @@ impl Writer<'_> {
         if arguments.is_empty() {
             return Ok(Bound(self.zero(ty, span)?, POSTFIX));
         }
-        let name = type_name(ty, span)?;
+        let name = self.names.type_name(ty, span)?;
         if let ([argument], Type::Scalar(scalar)) = (arguments, ty) {
             let text = self.scalar_conversion(*scalar, &argument.value, indent)?;
             return Ok(Bound(text, POSTFIX));
@@ -279,7 +278,7 @@ impl Writer<'_> {
         value: &Expression,
         indent: usize,
     ) -> Result<String, Diagnostic> {
-        let name = type_name(&Type::Scalar(scalar), value.span)?;
+        let name = self.names.type_name(&Type::Scalar(scalar), value.span)?;
         let from = value.ty.scalar();
         let text = match (scalar, from) {
             (Scalar::I32 | Scalar::U32, Some(Scalar::F32)) => {
@@ -328,7 +327,7 @@ impl Writer<'_> {
             (Some(Scalar::F32), Some(Scalar::U32)) => "uintBitsToFloat".to_owned(),
             (Some(Scalar::F32), Some(Scalar::I32)) => "intBitsToFloat".to_owned(),
             (Some(Scalar::I32 | Scalar::U32), Some(Scalar::I32 | Scalar::U32)) => {
-                type_name(target, value.span)?
+                self.names.type_name(target, value.span)?
             }
             _ => return Err(untranslated(value.span, "this `bitcast`")),
         };
@@ -343,22 +342,23 @@ impl Writer<'_> {
             Type::Scalar(Scalar::U32) => "0u".to_owned(),
             Type::Scalar(_) => "0.0".to_owned(),
             Type::Vector(_, scalar) => {
-                format!("{}({})", type_name(ty, span)?, self.zero(&Type::Scalar(*scalar), span)?)
+                let zero = self.zero(&Type::Scalar(*scalar), span)?;
+                format!("{}({zero})", self.names.type_name(ty, span)?)
             }
-            Type::Matrix { .. } => format!("{}(0.0)", type_name(ty, span)?),
+            Type::Matrix { .. } => format!("{}(0.0)", self.names.type_name(ty, span)?),
             Type::Structure(path) if self.facts.needs_zero(path) => {
-                format!("{}()", self.facts.zero_function(path))
+                format!("{}()", self.names.zero(path))
             }
             Type::Structure(path) => {
-                let members = self.globals.members(path).unwrap_or_default();
+                let members = self.globals.members(path);
                 let zeros: Result<Vec<String>, Diagnostic> =
                     members.iter().map(|member| self.zero(&member.ty, span)).collect();
-                format!("{}({})", item_name(path), zeros?.join(", "))
+                format!("{}({})", self.names.item(path), zeros?.join(", "))
             }
             Type::Array(element, crate::tree::Count::Fixed(count)) if *count <= LONGEST_ZERO => {
                 let zero = self.zero(element, span)?;
                 let zeros = vec![zero; *count as usize].join(", ");
-                format!("{}({zeros})", type_name(ty, span)?)
+                format!("{}({zeros})", self.names.type_name(ty, span)?)
             }
             other => return Err(untranslated(span, format!("the zero of {other}"))),
         })
@@ -415,7 +415,6 @@ impl Writer<'_> {
         left: &Expression,
         right: &Expression,
         line_break: LineBreak,
-        value: &Expression,
         indent: usize,
     ) -> Written {
         if let Some(special) = self.special_binary(operator, left, right, indent)? {
@@ -427,7 +426,6 @@ impl Writer<'_> {
             Binary::BitOr if is_truth => Binary::Or,
             other => other,
         };
-        let _ = value;
         let (sign, binds) = operator.spelling();
         let inner = indent + usize::from(line_break != LineBreak::None);
         let left = self.operand(left, binds, indent)?;

@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::visit::{block_expressions, item_locals};
-use super::words::glsl_name;
 use crate::condition::Condition;
 use crate::tree::{Callee, Expression, ExpressionKind, Field, Function, Item, ItemPath, Meaning};
 use crate::tree::{Module, Node, Space, Structure, Type, Unary};
@@ -17,7 +16,7 @@ pub struct Facts {
     /// Structures that are the blocks of uniforms, and the number of their other uses.
     blocks: BTreeMap<ItemPath, Structure>,
     /// Structures whose zero somebody needs.
-    zeros: BTreeMap<ItemPath, String>,
+    zeros: BTreeSet<ItemPath>,
     /// Functions that write something that is not their own.
     effects: BTreeSet<ItemPath>,
     /// Functions that compute with the values of neighbouring fragments.
@@ -25,7 +24,7 @@ pub struct Facts {
 }
 
 /// A member of what a stage takes or returns.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct StageField {
     pub name: String,
     /// As it is written in expressions.
@@ -105,14 +104,14 @@ impl Facts {
             }
         }
         while let Some(path) = wanted.pop() {
-            if self.stages.contains_key(&path) || self.zeros.contains_key(&path) {
+            if self.stages.contains_key(&path) || self.zeros.contains(&path) {
                 continue;
             }
-            let members = globals.members(&path).unwrap_or_default();
-            if !is_small(members) {
-                self.zeros.insert(path.clone(), zero_name(&path.name));
+            let members = globals.members(&path);
+            if !is_small(&members) {
+                self.zeros.insert(path.clone());
             }
-            for member in members {
+            for member in &members {
                 wanted.extend(structure_within(&member.ty));
             }
         }
@@ -205,17 +204,20 @@ impl Facts {
         self.stages.get(path).map_or(&[], Vec::as_slice)
     }
 
+    /// The members of what a stage returns.
+    pub fn result_members(&self, function: &Function) -> &[Node<Field>] {
+        match function.result.as_ref().map(|field| &field.ty) {
+            Some(Type::Structure(path)) => self.stage_members(path),
+            _ => &[],
+        }
+    }
+
     pub fn is_block(&self, path: &ItemPath) -> bool {
         self.blocks.contains_key(path)
     }
 
-    /// The name of the function that makes a structure of zeros.
-    pub fn zero_function(&self, path: &ItemPath) -> String {
-        self.zeros.get(path).cloned().unwrap_or_else(|| zero_name(&path.name))
-    }
-
     pub fn needs_zero(&self, path: &ItemPath) -> bool {
-        self.zeros.contains_key(path)
+        self.zeros.contains(path)
     }
 }
 
@@ -226,18 +228,6 @@ fn is_small(members: &[MemberType]) -> bool {
             && matches!(member.ty, Type::Scalar(_) | Type::Vector(..) | Type::Matrix { .. })
     };
     members.len() <= 8 && members.iter().all(is_plain)
-}
-
-/// `zero_complex_ior` for `ComplexIor`.
-fn zero_name(structure: &str) -> String {
-    let mut name = "zero".to_owned();
-    for letter in structure.chars() {
-        if letter.is_uppercase() && !name.ends_with('_') {
-            name.push('_');
-        }
-        name.extend(letter.to_lowercase());
-    }
-    glsl_name(&name)
 }
 
 fn structure_within(ty: &Type) -> Option<ItemPath> {

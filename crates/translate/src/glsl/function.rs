@@ -105,7 +105,7 @@ impl Writer<'_> {
             let text = listed(glsl, &texts, is_broken, indent);
             return Ok(called(match value.ty.scalar() {
                 Some(Scalar::U32) => {
-                    format!("{}({text})", super::words::type_name(&value.ty, value.span)?)
+                    format!("{}({text})", self.names.type_name(&value.ty, value.span)?)
                 }
                 _ => text,
             }));

@@ -8,11 +8,12 @@ use super::condition::{Chain, chains_of, directive};
 use super::expression::{LocalRole, Writer};
 use super::facts::Facts;
 use super::lines::{Indented, comment_text};
-use super::rename::local_names;
-use super::stage::{Direction, StageResult, stage_fields, stage_result};
+use super::names::Names;
+use super::outputs::{output_variable, unset_members};
+use super::place::{Samplers, parameter_samplers};
+use super::rename::{Surroundings, local_names};
+use super::stage::{Direction, StageResult, Variables, stage_result};
 use super::statement::BodyWriter;
-use super::texture::pair_parameter;
-use super::words::{declared_type, glsl_name, type_name};
 use crate::tree::{Constant, Field, Function, Item, ItemPath, Line, Node, Space, Stage, Structure};
 use crate::tree::{Type, Variable};
 use crate::types::Globals;
@@ -23,23 +24,39 @@ use crate::wesl::untranslated;
 pub struct ItemWriter<'a> {
     pub globals: &'a Globals,
     pub facts: &'a Facts,
+    pub names: &'a Names,
+    /// The stage whose file this is.
+    pub stage: Option<Stage>,
+    /// The variables of that stage.
+    pub variables: &'a [String],
     pub module: &'a [String],
     pub has_macros: bool,
-    /// The samplers that textures are read with, by name.
-    pub samplers: &'a BTreeMap<String, String>,
+    /// The samplers that the textures of the module are read with.
+    pub samplers: &'a Samplers,
     /// The structures of the module, for the blocks of its uniforms.
     pub structures: &'a BTreeMap<String, (Vec<Line>, Structure)>,
 }
 
 impl<'a> ItemWriter<'a> {
-    fn writer(&self) -> Writer<'a> {
+    fn own_path(&self, name: &str) -> ItemPath {
+        ItemPath { module: self.module.to_vec(), name: name.to_owned() }
+    }
+
+    /// The name of an item of the module.
+    pub fn own_name(&self, name: &str) -> &'a str {
+        self.names.item(&self.own_path(name))
+    }
+
+    pub fn writer(&self) -> Writer<'a> {
         Writer {
             globals: self.globals,
             facts: self.facts,
+            names: self.names,
             has_macros: self.has_macros,
             locals: BTreeMap::new(),
             counters: Default::default(),
             samplers: self.samplers,
+            pairs: BTreeMap::new(),
         }
     }
 
@@ -72,18 +89,19 @@ impl<'a> ItemWriter<'a> {
     fn constant(&self, constant: &Constant, out: &mut Indented) -> Result<(), Diagnostic> {
         let Constant { name, given, value, id, span } = constant;
         let ty = given.as_ref().unwrap_or(&value.ty);
-        let (ty, lengths) = declared_type(ty, *span)?;
+        let (ty, lengths) = self.names.declared_type(ty, *span)?;
         let value = self.writer().whole(value, 0)?;
         let layout = id.map_or(String::new(), |id| format!("layout(constant_id = {id}) "));
-        out.line(&format!("{layout}const {ty} {}{lengths} = {value};", glsl_name(name)));
+        let name = self.own_name(name);
+        out.line(&format!("{layout}const {ty} {name}{lengths} = {value};"));
         Ok(())
     }
 
     fn structure(&self, structure: &Structure, out: &mut Indented) -> Result<(), Diagnostic> {
-        out.line(&format!("struct {} {{", glsl_name(&structure.name)));
+        out.line(&format!("struct {} {{", self.own_name(&structure.name)));
         self.members(structure, out)?;
         out.line("};");
-        let path = ItemPath { module: self.module.to_vec(), name: structure.name.clone() };
+        let path = self.own_path(&structure.name);
         match self.facts.needs_zero(&path) {
             true => self.zero_function(&path, structure, out),
             false => Ok(()),
@@ -91,13 +109,15 @@ impl<'a> ItemWriter<'a> {
     }
 
     fn members(&self, structure: &Structure, out: &mut Indented) -> Result<(), Diagnostic> {
+        let path = self.own_path(&structure.name);
         out.depth += 1;
         for chain in chains_of(&structure.members) {
             write_chain(&chain, out, |node, out| {
                 node.lead.iter().for_each(|line| write_line(line, out));
                 let Field { name, ty, span, binding: _ } = &node.body;
-                let (ty, lengths) = declared_type(ty, *span)?;
-                out.line(&format!("{ty} {}{lengths};", glsl_name(name)));
+                let (ty, lengths) = self.names.declared_type(ty, *span)?;
+                let name = self.names.member(&path, name);
+                out.line(&format!("{ty} {name}{lengths};"));
                 if let Some(comment) = &node.trail {
                     out.trail(&comment_text(comment));
                 }
@@ -116,17 +136,18 @@ impl<'a> ItemWriter<'a> {
         structure: &Structure,
         out: &mut Indented,
     ) -> Result<(), Diagnostic> {
-        let name = glsl_name(&structure.name);
+        let name = self.own_name(&structure.name);
         out.blank();
         out.line(&format!("/// Zero in every member of `{name}`."));
-        out.line(&format!("{name} {}() {{", self.facts.zero_function(path)));
+        out.line(&format!("{name} {}() {{", self.names.zero(path)));
         out.depth += 1;
         out.line(&format!("{name} zero;"));
         let writer = self.writer();
         for chain in chains_of(&structure.members) {
             write_chain(&chain, out, |node, out| {
                 let zero = writer.zero(&node.body.ty, node.body.span)?;
-                out.line(&format!("zero.{} = {zero};", glsl_name(&node.body.name)));
+                let member = self.names.member(path, &node.body.name);
+                out.line(&format!("zero.{member} = {zero};"));
                 Ok(())
             })?;
         }
@@ -151,27 +172,26 @@ impl<'a> ItemWriter<'a> {
         let place = binding.map(|(set, binding)| format!("set = {set}, binding = {binding}"));
         match (space, place) {
             (Space::Handle, Some(place)) => {
-                let ty = type_name(ty, *span)?;
-                out.line(&format!("layout({place}) uniform {ty} {};", glsl_name(name)));
+                let ty = self.names.type_name(ty, *span)?;
+                out.line(&format!("layout({place}) uniform {ty} {};", self.own_name(name)));
                 Ok(())
             }
             (Space::Uniform | Space::Storage { .. }, Some(place)) => {
                 self.block(variable, &place, out)
             }
             (Space::Private, None) => {
-                let (ty_text, lengths) = declared_type(ty, *span)?;
+                let (ty_text, lengths) = self.names.declared_type(ty, *span)?;
                 let value = match value {
                     Some(value) => self.writer().whole(value, 0)?,
                     None => self.writer().zero(ty, *span)?,
                 };
-                out.line(&format!("{ty_text} {}{lengths} = {value};", glsl_name(name)));
+                out.line(&format!("{ty_text} {}{lengths} = {value};", self.own_name(name)));
                 Ok(())
             }
-            (Space::Workgroup, None) => {
-                let (ty_text, lengths) = declared_type(ty, *span)?;
-                out.line(&format!("shared {ty_text} {}{lengths};", glsl_name(name)));
-                Ok(())
-            }
+            (Space::Workgroup, _) => Err(untranslated(
+                *span,
+                "a variable of a workgroup, which is zero at first in WGSL",
+            )),
             _ => Err(untranslated(*span, "this variable")),
         }
     }
@@ -190,10 +210,10 @@ impl<'a> ItemWriter<'a> {
         };
         self.check_layout(ty, *space, variable)?;
         if let Some((_, structure)) = self.block_structure(variable) {
-            let block = glsl_name(&structure.name);
+            let block = self.own_name(&structure.name);
             out.line(&format!("layout({layout}, {place}) {kind} {block} {{"));
             self.members(structure, out)?;
-            out.line(&format!("}} {};", glsl_name(name)));
+            out.line(&format!("}} {};", self.own_name(name)));
             return Ok(());
         }
         if matches!(ty, Type::Structure(_)) {
@@ -203,13 +223,14 @@ impl<'a> ItemWriter<'a> {
             )
             .note("help: give the binding a structure of its own"));
         }
-        let (ty, lengths) = declared_type(ty, *span)?;
-        let name = glsl_name(name);
-        let mut block = name.clone();
+        let (ty, lengths) = self.names.declared_type(ty, *span)?;
+        let name = self.own_name(name);
+        let mut block = name.to_owned();
         if let Some(first) = block.get_mut(0..1) {
             first.make_ascii_uppercase();
         }
         let block = if block == name { format!("{name}Block") } else { block };
+        let block = self.names.invented(&block);
         out.line(&format!("layout({layout}, {place}) {kind} {block} {{"));
         out.line(&format!("    {ty} {name}{lengths};"));
         out.line("};");
@@ -230,7 +251,7 @@ impl<'a> ItemWriter<'a> {
             }
             Type::Array(element, _) => self.check_layout(element, space, variable),
             Type::Structure(path) => {
-                for member in self.globals.members(path).unwrap_or_default() {
+                for member in &self.globals.members(path) {
                     match &member.ty {
                         Type::Array(element, _) => {
                             let is_narrow =
@@ -252,18 +273,34 @@ impl<'a> ItemWriter<'a> {
     /// A function, or a stage.
     pub fn function(&self, function: &Function, out: &mut Indented) -> Result<(), Diagnostic> {
         let mut writer = self.writer();
-        writer.locals = local_names(function);
-        self.stage_locals(function, &mut writer)?;
+        let around = Surroundings {
+            names: self.names,
+            globals: self.globals,
+            module: self.module,
+            variables: self.variables,
+        };
+        writer.locals = local_names(function, &around)?;
+        writer.pairs = parameter_samplers(function);
+        self.stage_inputs(function, &mut writer)?;
         let result = match function.stage {
-            Some(stage) => Some(stage_result(function, stage, self.facts)?),
+            Some(stage) => Some(stage_result(function, stage, self.facts, self.names)?),
             None => None,
         };
+        let mut unset = Vec::new();
+        if let Some(StageResult::Fields(fields)) = &result
+            && let Some(number) = output_variable(function)?
+        {
+            let fields = fields.iter().map(|(_, field)| field.clone()).collect();
+            writer.locals.insert(number, LocalRole::Outputs(fields));
+            let members = self.facts.result_members(function);
+            unset = unset_members(&function.body, number, members);
+        }
         match function.stage {
             Some(_) => out.line("void main() {"),
             None => self.header(function, &writer, out)?,
         }
         let inner = Indented { text: std::mem::take(&mut out.text), depth: 1 };
-        let mut body = BodyWriter { writer, out: inner, result };
+        let mut body = BodyWriter { writer, out: inner, result, unset };
         let written = body.nodes(&function.body, true);
         out.text = body.out.text;
         written?;
@@ -272,17 +309,22 @@ impl<'a> ItemWriter<'a> {
     }
 
     /// What the parameters of a stage and of its functions have become.
-    fn stage_locals(&self, function: &Function, writer: &mut Writer<'_>) -> Result<(), Diagnostic> {
-        let stage = function.stage.unwrap_or(Stage::Fragment);
+    fn stage_inputs(&self, function: &Function, writer: &mut Writer<'_>) -> Result<(), Diagnostic> {
         for node in &function.parameters {
             let Field { name, ty, binding, span } = &node.body;
-            let role = match (ty, binding) {
-                (_, Some(binding)) => {
-                    LocalRole::Input(Direction::In.variable(stage, name, &binding.place, *span)?)
+            let variables = self.stage.map(|stage| Variables {
+                stage,
+                direction: Direction::In,
+                names: self.names,
+            });
+            let role = match (ty, binding, variables) {
+                (_, Some(binding), Some(variables)) => {
+                    LocalRole::Input(variables.one(name, &binding.place, *span)?)
                 }
-                (Type::Structure(path), None) if self.facts.is_stage_structure(path) => {
-                    let members = self.facts.stage_members(path);
-                    LocalRole::Stage(stage_fields(members, stage, Direction::In)?)
+                (Type::Structure(path), None, Some(variables))
+                    if self.facts.is_stage_structure(path) =>
+                {
+                    LocalRole::Stage(variables.fields(self.facts.stage_members(path))?)
                 }
                 _ if function.stage.is_some() => {
                     return Err(untranslated(*span, "a parameter of a stage without a place"));
@@ -291,177 +333,13 @@ impl<'a> ItemWriter<'a> {
             };
             writer.locals.insert(span.start, role);
         }
-        if let (Some(stage), Some(StageResult::Fields(_))) =
-            (function.stage, self.result_of(function)?)
-        {
-            let wanted = function.result.as_ref().map(|field| field.ty.clone());
-            let item = Item::Function(function.clone());
-            let mut found = Vec::new();
-            super::visit::item_locals(&item, &mut |local| {
-                if local.ty == wanted {
-                    found.push(local.span.start);
-                }
-            });
-            if let Some(Type::Structure(path)) = &wanted {
-                let members = self.facts.stage_members(path);
-                let fields = stage_fields(members, stage, Direction::Out)?;
-                for number in found {
-                    writer.locals.insert(number, LocalRole::Stage(fields.clone()));
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn result_of(&self, function: &Function) -> Result<Option<StageResult>, Diagnostic> {
-        match function.stage {
-            Some(stage) => stage_result(function, stage, self.facts).map(Some),
-            None => Ok(None),
-        }
-    }
-
-    fn header(
-        &self,
-        function: &Function,
-        writer: &Writer<'_>,
-        out: &mut Indented,
-    ) -> Result<(), Diagnostic> {
-        let result = function.result.as_ref().map_or(&Type::Nothing, |field| &field.ty);
-        let head = format!("{} {}", type_name(result, function.span)?, glsl_name(&function.name));
-        let kept: Vec<&Node<Field>> = function
-            .parameters
-            .iter()
-            .filter(|node| !self.facts.is_stage_type(&node.body.ty))
-            .collect();
-        let is_conditional = kept.iter().any(|node| node.branch.is_some());
-        if is_conditional {
-            return self.conditional_header(&head, function, writer, out);
-        }
-        let parameters = self.parameters(&kept, writer)?;
-        let line = format!("{head}({}) {{", parameters.join(", "));
-        let is_long = line.len() > LONGEST_LINE && parameters.len() > 1;
-        let has_comments = kept.iter().any(|node| !node.lead.is_empty() || node.trail.is_some());
-        match is_long || has_comments {
-            false => out.line(&line),
-            true => {
-                out.line(&format!("{head}("));
-                let last = parameters.len() - 1;
-                for (index, parameter) in parameters.iter().enumerate() {
-                    let comma = if index == last { "" } else { "," };
-                    kept_lines(&kept, index, out);
-                    out.line(&format!("    {parameter}{comma}"));
-                    if let Some(comment) = kept.get(index).and_then(|node| node.trail.as_ref()) {
-                        out.trail(&comment_text(comment));
-                    }
-                }
-                out.line(") {");
-            }
-        }
-        Ok(())
-    }
-
-    /// Parameters as texts. A texture and the sampler behind it may be one macro.
-    fn parameters(
-        &self,
-        kept: &[&Node<Field>],
-        writer: &Writer<'_>,
-    ) -> Result<Vec<String>, Diagnostic> {
-        let mut texts = Vec::new();
-        let mut at = 0;
-        while let Some(node) = kept.get(at) {
-            let name = parameter_name(&node.body, writer);
-            if let Some(next) = kept.get(at + 1).filter(|_| self.has_macros) {
-                let names = (name.as_str(), parameter_name(&next.body, writer));
-                let pair = pair_parameter(&node.body.ty, &next.body.ty, (names.0, &names.1));
-                if let Some(pair) = pair {
-                    texts.push(pair);
-                    at += 2;
-                    continue;
-                }
-            }
-            texts.push(self.parameter(&node.body, &name)?);
-            at += 1;
-        }
-        Ok(texts)
-    }
-
-    fn parameter(&self, field: &Field, name: &str) -> Result<String, Diagnostic> {
-        let (word, ty) = match &field.ty {
-            Type::Pointer(Space::Function | Space::Private, target) => ("inout ", &**target),
-            Type::Pointer(..) => return Err(untranslated(field.span, "a pointer into a buffer")),
-            other => ("", other),
-        };
-        let (ty, lengths) = declared_type(ty, field.span)?;
-        Ok(format!("{word}{ty} {name}{lengths}"))
-    }
-
-    /// A header with parameters that have conditions. The commas belong to the conditions: those
-    /// before the last parameter that always exists stand behind, and those after it before.
-    fn conditional_header(
-        &self,
-        head: &str,
-        function: &Function,
-        writer: &Writer<'_>,
-        out: &mut Indented,
-    ) -> Result<(), Diagnostic> {
-        let nodes: Vec<Node<Field>> = function
-            .parameters
-            .iter()
-            .filter(|node| !self.facts.is_stage_type(&node.body.ty))
-            .cloned()
-            .collect();
-        let last_fixed = nodes.iter().rposition(|node| node.branch.is_none());
-        let chains = chains_of(&nodes);
-        if last_fixed.is_none() && chains.len() > 1 {
-            return Err(untranslated(nodes[0].span, "parameters that all have conditions"));
-        }
-        out.line(&format!("{head}("));
-        out.depth += 1;
-        let mut at = 0;
-        for chain in &chains {
-            write_chain(chain, out, |node, out| {
-                let name = parameter_name(&node.body, writer);
-                let text = self.parameter(&node.body, &name)?;
-                node.lead.iter().for_each(|line| write_line(line, out));
-                match last_fixed {
-                    Some(fixed) if at < fixed => out.line(&format!("{text},")),
-                    Some(fixed) if at > fixed => out.line(&format!(", {text}")),
-                    _ => out.line(&text),
-                }
-                if let Some(comment) = &node.trail {
-                    out.trail(&comment_text(comment));
-                }
-                at += 1;
-                Ok(())
-            })?;
-        }
-        out.depth -= 1;
-        out.line(") {");
         Ok(())
     }
 }
-
-/// Where the parameters of a function get lines of their own.
-const LONGEST_LINE: usize = 120;
 
 /// Whether a type is the element of an array that is a binding.
 fn is_element(variable: &Variable, ty: &Type) -> bool {
     matches!(&variable.ty, Type::Array(element, _) if **element == *ty)
-}
-
-fn kept_lines(kept: &[&Node<Field>], index: usize, out: &mut Indented) {
-    if let Some(node) = kept.get(index) {
-        out.depth += 1;
-        node.lead.iter().for_each(|line| write_line(line, out));
-        out.depth -= 1;
-    }
-}
-
-fn parameter_name(field: &Field, writer: &Writer<'_>) -> String {
-    match writer.locals.get(&field.span.start) {
-        Some(LocalRole::Named(name)) => name.clone(),
-        _ => glsl_name(&field.name),
-    }
 }
 
 /// A chain with its directives.

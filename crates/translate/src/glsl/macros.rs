@@ -11,8 +11,8 @@ use crate::condition::{AxisValue, Condition};
 use crate::tree::{Branch, Count, ExpressionKind, Item, Module, Node, Statement, Type};
 use crate::wesl::untranslated;
 
-/// The errors for declarations whose names the preprocessor would replace.
-pub fn check_names(modules: &[Module]) -> Diagnostics {
+/// The names that are macros.
+pub fn macros_of(modules: &[Module]) -> Macros {
     let mut macros = BTreeMap::new();
     for module in modules {
         for import in &module.imports {
@@ -23,6 +23,11 @@ pub fn check_names(modules: &[Module]) -> Diagnostics {
             item_macros(&node.body, &mut macros);
         }
     }
+    macros
+}
+
+/// The errors for declarations whose names the preprocessor would replace.
+pub fn check_names(modules: &[Module], macros: &Macros) -> Diagnostics {
     let mut errors = Vec::new();
     for module in modules {
         for node in &module.items {
@@ -48,7 +53,7 @@ fn collision(name: &str, axis: &str, span: Span) -> Diagnostic {
 }
 
 /// By macro, the axis that it belongs to.
-type Macros = BTreeMap<String, String>;
+pub type Macros = BTreeMap<String, String>;
 
 fn add(condition: &Condition, macros: &mut Macros) {
     match condition {

@@ -6,11 +6,14 @@ mod counter;
 mod expression;
 mod facts;
 mod function;
+mod header;
 mod item;
 mod lines;
 mod macros;
+mod names;
 mod operator;
 mod order;
+mod outputs;
 mod place;
 mod range;
 mod rename;
@@ -26,14 +29,15 @@ use std::collections::BTreeMap;
 use lamplight_diagnostic::{Diagnostic, Diagnostics};
 
 use crate::condition::Condition;
-use crate::tree::{Item, ItemPath, Line, Module, Node, Stage, Structure, Type};
+use crate::tree::{Field, Item, ItemPath, Line, Module, Node, Stage, Structure, Type};
 use crate::types::Globals;
 use condition::{chains_of, condition_text, directive};
 use facts::Facts;
 use item::ItemWriter;
 use lines::Indented;
+use names::Names;
 use place::{Exports, Part, exports_of, is_short, place_items, samplers_of};
-use stage::{Direction, declaration, declared_fields};
+use stage::{Direction, Variables, declared_fields};
 use uses::item_uses;
 
 /// How files are written.
@@ -72,11 +76,13 @@ pub fn print_modules(
     globals: &Globals,
     style: &Style<'_>,
 ) -> Result<Vec<MadeFile>, Diagnostics> {
+    let macros = macros::macros_of(modules);
     let facts = Facts::of(modules, globals);
+    let names = Names::of(modules, macros.keys());
     let exports = exports_of(modules);
-    let printer = Printer { globals, facts: &facts, exports: &exports, style };
+    let printer = Printer { globals, facts: &facts, names: &names, exports: &exports, style };
     let mut files = Vec::new();
-    let mut errors = macros::check_names(modules);
+    let mut errors = macros::check_names(modules, &macros);
     for module in modules {
         match printer.module(module) {
             Ok(made) => files.extend(made),
@@ -90,6 +96,7 @@ pub fn print_modules(
 struct Printer<'a> {
     globals: &'a Globals,
     facts: &'a Facts,
+    names: &'a Names,
     exports: &'a Exports,
     style: &'a Style<'a>,
 }
@@ -97,11 +104,14 @@ struct Printer<'a> {
 impl Printer<'_> {
     fn module(&self, module: &Module) -> Result<Vec<MadeFile>, Diagnostics> {
         let places = place_items(module, self.facts, self.exports).map_err(|error| vec![error])?;
-        let samplers = samplers_of(module);
+        let samplers = samplers_of(module, self.globals);
         let structures = structures_of(module);
         let writer = ItemWriter {
             globals: self.globals,
             facts: self.facts,
+            names: self.names,
+            stage: None,
+            variables: &[],
             module: &module.path,
             has_macros: self.style.sampling.is_some(),
             samplers: &samplers,
@@ -175,9 +185,11 @@ impl Printer<'_> {
             let what = "a second entry point of a stage";
             return Err(vec![crate::wesl::untranslated(span, what)]);
         };
+        let mut variables = Vec::new();
         if let Item::Function(function) = &entry.body {
-            self.interface(function, stage, &mut out).map_err(|error| vec![error])?;
+            variables = self.interface(function, stage, &mut out).map_err(|error| vec![error])?;
         }
+        let writer = &ItemWriter { stage: Some(stage), variables: &variables, ..*writer };
         let others: Vec<Node<Item>> =
             file.items.iter().filter(|node| !std::ptr::eq(*node, *entry)).cloned().collect();
         if !others.is_empty() {
@@ -198,7 +210,7 @@ impl Printer<'_> {
         function: &crate::tree::Function,
         stage: Stage,
         out: &mut Indented,
-    ) -> Result<(), Diagnostic> {
+    ) -> Result<Vec<String>, Diagnostic> {
         if stage == Stage::Compute {
             let writer = function.workgroup.iter().map(expression::Writer::literal);
             let sizes: Option<Vec<i64>> = writer.collect();
@@ -211,20 +223,32 @@ impl Printer<'_> {
             out.blank();
             out.line(&format!("layout({}) in;", words.join(", ")));
         }
+        let mut found: Vec<(String, Condition)> = Vec::new();
         for direction in [Direction::In, Direction::Out] {
+            let variables = Variables { stage, direction, names: self.names };
             let fields = declared_fields(function, self.facts, direction);
             if fields.is_empty() {
                 continue;
             }
+            for (node, condition) in fields.iter().zip(crate::tree::whole_conditions(&fields)) {
+                let Field { name, binding, span, ty: _ } = &node.body;
+                let Some(binding) = binding else { continue };
+                let variable = variables.one(name, &binding.place, *span)?;
+                if found.iter().any(|(other, at)| *other == variable && !at.excludes(&condition)) {
+                    let what = format!("a second `{name}` of what a stage takes or returns");
+                    return Err(crate::wesl::untranslated(*span, what));
+                }
+                found.push((variable, condition));
+            }
             out.blank();
             for chain in chains_of(&fields) {
                 item::write_chain(&chain, out, |node, out| {
-                    out.line(&declaration(&node.body, stage, direction)?);
+                    out.line(&variables.declaration(&node.body)?);
                     Ok(())
                 })?;
             }
         }
-        Ok(())
+        Ok(found.into_iter().map(|(name, _)| name).collect())
     }
 
     /// The documentation, and what the file is made from.

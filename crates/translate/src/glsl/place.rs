@@ -11,7 +11,9 @@ use lamplight_diagnostic::Diagnostic;
 use super::facts::Facts;
 use super::uses::item_uses;
 use crate::condition::Condition;
-use crate::tree::{Branch, Item, ItemPath, Module, Node, Space, Stage, Type, whole_conditions};
+use crate::tree::{Branch, Expression, ExpressionKind, Function, Item, ItemPath, Meaning, Module};
+use crate::tree::{Node, Space, Stage, Type, whole_conditions};
+use crate::types::Globals;
 use crate::wesl::untranslated;
 
 /// A file that is made from a module.
@@ -256,44 +258,88 @@ fn chain_from(module: &Module, first: usize) -> Vec<usize> {
     chain
 }
 
-/// The textures of a module with the samplers that they are read with, by name.
-pub fn samplers_of(module: &Module) -> BTreeMap<String, String> {
-    let mut samplers = BTreeMap::new();
+/// The samplers that textures are read with.
+pub type Samplers = BTreeMap<ItemPath, Sampler>;
+
+/// A sampler of the module, and whether it compares.
+#[derive(Debug, Clone)]
+pub struct Sampler {
+    pub path: ItemPath,
+    pub compares: bool,
+}
+
+/// The textures of a module with samplers that exist wherever they do.
+pub fn samplers_of(module: &Module, globals: &Globals) -> Samplers {
+    let mut samplers = Samplers::new();
     for node in &module.items {
-        if let Item::Function(function) = &node.body {
-            parameter_samplers(function, &mut samplers);
-            super::visit::block_expressions(&function.body, &mut |value| {
-                read_samplers(value, &mut samplers);
-            });
-        }
+        let Item::Function(function) = &node.body else { continue };
+        read_pairs(function, &mut |texture, sampler| {
+            let (Meaning::Item(texture), Meaning::Item(path)) = (texture.meaning, sampler.meaning)
+            else {
+                return;
+            };
+            let exists = |condition: &Condition| {
+                globals.items(path).iter().any(|one| condition.implies(&one.condition))
+            };
+            if globals.items(texture).iter().all(|one| exists(&one.condition)) {
+                let compares = matches!(sampler.ty, Type::Sampler { compares: true });
+                let found = Sampler { path: path.clone(), compares };
+                samplers.entry(texture.clone()).or_insert(found);
+            }
+        });
     }
     samplers
 }
 
-fn parameter_samplers(function: &crate::tree::Function, samplers: &mut BTreeMap<String, String>) {
-    for pair in function.parameters.windows(2) {
-        let (texture, sampler) = (&pair[0].body, &pair[1].body);
-        if let (Type::Texture(_), Type::Sampler { .. }) = (&texture.ty, &sampler.ty) {
-            let name = super::words::glsl_name(&texture.name);
-            samplers.entry(name).or_insert_with(|| super::words::glsl_name(&sampler.name));
+/// The parameters that are samplers, by the parameters that are read with them.
+pub type Pairs = BTreeMap<u32, (u32, bool)>;
+
+/// The pairs of a function: what it reads together, or what stands together in its head.
+pub fn parameter_samplers(function: &Function) -> Pairs {
+    let mut pairs = Pairs::new();
+    read_pairs(function, &mut |texture, sampler| {
+        if let (Meaning::Local(texture), Meaning::Local(found)) = (texture.meaning, sampler.meaning)
+            && let ([texture], [found]) = (texture.as_slice(), found.as_slice())
+        {
+            let compares = matches!(sampler.ty, Type::Sampler { compares: true });
+            pairs.entry(*texture).or_insert((*found, compares));
         }
+    });
+    for pair in function.parameters.windows(2) {
+        if let (Type::Texture(_), Type::Sampler { compares }) = (&pair[0].body.ty, &pair[1].body.ty)
+        {
+            let found = (pair[1].body.span.start, *compares);
+            pairs.entry(pair[0].body.span.start).or_insert(found);
+        }
+    }
+    pairs
+}
+
+/// A name in an expression.
+struct Named<'a> {
+    meaning: &'a Meaning,
+    ty: &'a Type,
+}
+
+fn named(value: &Expression) -> Option<Named<'_>> {
+    match &value.bare().kind {
+        ExpressionKind::Name(_, meaning) => Some(Named { meaning, ty: &value.ty }),
+        _ => None,
     }
 }
 
-fn read_samplers(value: &crate::tree::Expression, samplers: &mut BTreeMap<String, String>) {
-    use crate::tree::{ExpressionKind, Meaning};
-    let ExpressionKind::Call { arguments, .. } = &value.kind else { return };
-    for pair in arguments.windows(2) {
-        if let (Type::Texture(_), Type::Sampler { .. }) = (&pair[0].value.ty, &pair[1].value.ty)
-            && let (
-                ExpressionKind::Name(texture, Meaning::Item(_)),
-                ExpressionKind::Name(sampler, Meaning::Item(_)),
-            ) = (&pair[0].value.kind, &pair[1].value.kind)
-        {
-            let name = super::words::glsl_name(texture);
-            samplers.entry(name).or_insert_with(|| super::words::glsl_name(sampler));
+/// Calls `visit` with each texture and the sampler that is an argument behind it.
+fn read_pairs(function: &Function, visit: &mut dyn FnMut(Named<'_>, Named<'_>)) {
+    super::visit::block_expressions(&function.body, &mut |value| {
+        let ExpressionKind::Call { arguments, .. } = &value.kind else { return };
+        for pair in arguments.windows(2) {
+            if let (Some(texture), Some(sampler)) = (named(&pair[0].value), named(&pair[1].value))
+                && let (Type::Texture(_), Type::Sampler { .. }) = (texture.ty, sampler.ty)
+            {
+                visit(texture, sampler);
+            }
         }
-    }
+    });
 }
 
 /// Whether a variable is one line, which may stand below another one without a blank line between.

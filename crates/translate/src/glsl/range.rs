@@ -11,6 +11,13 @@ pub struct Range {
     pub most: f64,
 }
 
+impl Range {
+    /// The range of what is in either.
+    fn union(self, other: Self) -> Self {
+        Self { least: self.least.min(other.least), most: self.most.max(other.most) }
+    }
+}
+
 /// What is known of locals: of variables of loops that count up, and of values that never change.
 pub type Counters = BTreeMap<u32, Range>;
 
@@ -47,7 +54,11 @@ fn known_range(value: &Expression, counters: &Counters) -> Option<Range> {
             };
             Some(Range { least: number, most: number })
         }
-        ExpressionKind::Name(_, Meaning::Local(number)) => counters.get(number).copied(),
+        ExpressionKind::Name(_, Meaning::Local(numbers)) => {
+            let ranges: Option<Vec<Range>> =
+                numbers.iter().map(|number| counters.get(number).copied()).collect();
+            ranges?.into_iter().reduce(Range::union)
+        }
         ExpressionKind::Parenthesised(inner) => Some(of(inner)),
         ExpressionKind::Binary { operator, left, right, .. } => {
             binary_range(*operator, of(left), of(right), value.ty.scalar())

@@ -4,8 +4,8 @@ use lamplight_diagnostic::Diagnostic;
 use lamplight_diagnostic::source::Span;
 
 use super::facts::{Facts, StageField};
-use super::words::{declared_type, glsl_name};
-use crate::tree::{Field, Function, Node, Stage, StageBinding, StagePlace, Type};
+use super::names::Names;
+use crate::tree::{Field, Function, Node, Stage, StageBinding, StagePlace, Type, kept_siblings};
 use crate::wesl::untranslated;
 
 /// What a stage returns.
@@ -50,20 +50,27 @@ impl Direction {
             Self::Out => "out",
         }
     }
+}
 
-    /// The text of a field of a stage in expressions.
-    pub fn variable(
-        self,
-        stage: Stage,
-        name: &str,
-        place: &StagePlace,
-        span: Span,
-    ) -> Result<String, Diagnostic> {
+/// The variables of a stage in one direction.
+#[derive(Clone, Copy)]
+pub struct Variables<'a> {
+    pub stage: Stage,
+    pub direction: Direction,
+    pub names: &'a Names,
+}
+
+impl Variables<'_> {
+    /// The text of a field of the stage in expressions.
+    pub fn one(&self, name: &str, place: &StagePlace, span: Span) -> Result<String, Diagnostic> {
         match place {
-            StagePlace::Location(_) => Ok(glsl_name(&format!("{}_{name}", self.word()))),
+            StagePlace::Location(_) => {
+                Ok(self.names.invented(&format!("{}_{name}", self.direction.word())))
+            }
             StagePlace::Builtin(builtin) => {
-                let table = if self == Self::In { INPUTS } else { OUTPUTS };
-                let found = table.iter().find(|(of, known, _)| *of == stage && known == builtin);
+                let table = if self.direction == Direction::In { INPUTS } else { OUTPUTS };
+                let found =
+                    table.iter().find(|(of, known, _)| *of == self.stage && known == builtin);
                 let (.., text) = found.ok_or_else(|| {
                     untranslated(span, format!("the built-in value `{builtin}` here"))
                 })?;
@@ -71,24 +78,51 @@ impl Direction {
             }
         }
     }
-}
 
-/// The members of a structure of a stage.
-pub fn stage_fields(
-    members: &[Node<Field>],
-    stage: Stage,
-    direction: Direction,
-) -> Result<Vec<StageField>, Diagnostic> {
-    let mut fields = Vec::new();
-    for node in members {
-        let Field { name, binding, span, ty: _ } = &node.body;
-        let Some(binding) = binding else {
-            return Err(untranslated(*span, "a member of a stage without a place"));
-        };
-        let variable = direction.variable(stage, name, &binding.place, *span)?;
-        fields.push(StageField { name: name.clone(), variable });
+    /// The members of a structure of the stage.
+    pub fn fields(&self, members: &[Node<Field>]) -> Result<Vec<StageField>, Diagnostic> {
+        let mut fields = Vec::new();
+        for node in members {
+            let Field { name, binding, span, ty: _ } = &node.body;
+            let Some(binding) = binding else {
+                return Err(untranslated(*span, "a member of a stage without a place"));
+            };
+            let variable = self.one(name, &binding.place, *span)?;
+            fields.push(StageField { name: name.clone(), variable });
+        }
+        Ok(fields)
     }
-    Ok(fields)
+
+    /// The declaration of a variable.
+    pub fn declaration(&self, field: &Field) -> Result<String, Diagnostic> {
+        let Some(StageBinding { place, interpolation, invariant }) = &field.binding else {
+            return Err(untranslated(field.span, "a field of a stage without a location"));
+        };
+        let variable = self.one(&field.name, place, field.span)?;
+        let location = match place {
+            StagePlace::Location(location) => location,
+            StagePlace::Builtin(_) if *invariant => return Ok(format!("invariant {variable};")),
+            StagePlace::Builtin(_) => return Ok(String::new()),
+        };
+        let mut words = String::new();
+        let is_varying = (self.stage, self.direction) != (Stage::Vertex, Direction::In)
+            && (self.stage, self.direction) != (Stage::Fragment, Direction::Out);
+        if let Some(found) = interpolation.as_ref().filter(|_| is_varying) {
+            words += match found.kind.as_str() {
+                "flat" => "flat ",
+                "linear" => "noperspective ",
+                _ => "",
+            };
+            words += match found.sampling.as_deref() {
+                Some("centroid") => "centroid ",
+                Some("sample") => "sample ",
+                _ => "",
+            };
+        }
+        let (ty, lengths) = self.names.declared_type(&field.ty, field.span)?;
+        let word = self.direction.word();
+        Ok(format!("layout(location = {location}) {words}{word} {ty} {variable}{lengths};"))
+    }
 }
 
 /// Where the result of a stage goes.
@@ -96,11 +130,13 @@ pub fn stage_result(
     function: &Function,
     stage: Stage,
     facts: &Facts,
+    names: &Names,
 ) -> Result<StageResult, Diagnostic> {
+    let variables = Variables { stage, direction: Direction::Out, names };
     let Some(field) = &function.result else { return Ok(StageResult::Nothing) };
     if let (Type::Structure(path), None) = (&field.ty, &field.binding) {
         let members = facts.stage_members(path);
-        let fields = stage_fields(members, stage, Direction::Out)?;
+        let fields = variables.fields(members)?;
         let always = members.iter().map(|node| node.branch.is_none());
         return Ok(StageResult::Fields(always.zip(fields).collect()));
     }
@@ -108,7 +144,7 @@ pub fn stage_result(
         return Err(untranslated(field.span, "a result of a stage without a place"));
     };
     let name = result_name(&binding.place);
-    Ok(StageResult::One(Direction::Out.variable(stage, &name, &binding.place, field.span)?))
+    Ok(StageResult::One(variables.one(&name, &binding.place, field.span)?))
 }
 
 /// The name of an output that has none: `color` for the first one.
@@ -149,45 +185,13 @@ pub fn declared_fields(
             _ => declared.push(node),
         }
     }
-    let is_location = |node: &Node<Field>| {
-        let place = node.body.binding.as_ref().map(|binding| &binding.place);
-        matches!(place, Some(StagePlace::Location(_)))
-    };
-    declared.retain(is_location);
+    let mut declared = kept_siblings(&declared, |node| match &node.body.binding {
+        Some(StageBinding { place: StagePlace::Location(_), .. }) => true,
+        Some(StageBinding { invariant, .. }) => *invariant && direction == Direction::Out,
+        None => false,
+    });
     for node in &mut declared {
         node.lead.clear();
     }
     declared
-}
-
-/// The declaration of one of them.
-pub fn declaration(
-    field: &Field,
-    stage: Stage,
-    direction: Direction,
-) -> Result<String, Diagnostic> {
-    let Some(StageBinding { place: place @ StagePlace::Location(location), interpolation, .. }) =
-        &field.binding
-    else {
-        return Err(untranslated(field.span, "a field of a stage without a location"));
-    };
-    let mut words = String::new();
-    let is_varying = (stage, direction) != (Stage::Vertex, Direction::In)
-        && (stage, direction) != (Stage::Fragment, Direction::Out);
-    if let Some(found) = interpolation.as_ref().filter(|_| is_varying) {
-        words += match found.kind.as_str() {
-            "flat" => "flat ",
-            "linear" => "noperspective ",
-            _ => "",
-        };
-        words += match found.sampling.as_deref() {
-            Some("centroid") => "centroid ",
-            Some("sample") => "sample ",
-            _ => "",
-        };
-    }
-    let variable = direction.variable(stage, &field.name, place, field.span)?;
-    let (ty, lengths) = declared_type(&field.ty, field.span)?;
-    let word = direction.word();
-    Ok(format!("layout(location = {location}) {words}{word} {ty} {variable}{lengths};"))
 }

@@ -6,11 +6,11 @@ use super::condition::{chains_of, directive};
 use super::expression::{LocalRole, Writer};
 use super::lines::{Indented, comment_text};
 use super::order::check_order;
+use super::outputs::{reads_outputs, write_zeros};
 use super::range::{COUNTER, range_of};
 use super::stage::StageResult;
-use super::words::declared_type;
-use crate::tree::{Binary, Block, Case, Expression, ExpressionKind, Line, Local, Meaning, Node};
-use crate::tree::{Statement, Type};
+use crate::tree::{Binary, Block, Callee, Case, Expression, ExpressionKind, Field, Line, Local};
+use crate::tree::{Meaning, Node, Statement, Type};
 use crate::wesl::untranslated;
 
 /// Writes the statements of a function.
@@ -19,6 +19,8 @@ pub struct BodyWriter<'a> {
     pub out: Indented,
     /// What a stage returns: `None` in a function that is no stage.
     pub result: Option<StageResult>,
+    /// The outputs of the stage that are zero at first.
+    pub unset: Vec<Node<Field>>,
 }
 
 impl BodyWriter<'_> {
@@ -145,17 +147,15 @@ impl BodyWriter<'_> {
 
     fn local(&mut self, local: &Local) -> Result<Option<String>, Diagnostic> {
         let ty = local.ty.as_ref().unwrap_or(&Type::Unknown);
-        if let Some(LocalRole::Stage(_)) = self.writer.locals.get(&local.span.start) {
-            return match local.value {
-                None => Ok(None),
-                Some(_) => Err(untranslated(local.span, "a copy of what a stage takes or returns")),
-            };
+        if let Some(LocalRole::Outputs(fields)) = self.writer.locals.get(&local.span.start) {
+            write_zeros(&self.writer, fields, &self.unset, &mut self.out)?;
+            return Ok(None);
         }
         if matches!(ty, Type::Pointer(..)) {
             return Err(untranslated(local.span, "a pointer with a name")
                 .note("help: use the variable itself"));
         }
-        let (name, lengths) = declared_type(ty, local.span)?;
+        let (name, lengths) = self.writer.names.declared_type(ty, local.span)?;
         if let Some(value) = local.value.as_ref().filter(|_| !local.is_variable) {
             let range = range_of(value, &self.writer.counters);
             self.writer.counters.insert(local.span.start, range);
@@ -172,7 +172,7 @@ impl BodyWriter<'_> {
     fn local_name(&self, local: &Local) -> String {
         match self.writer.locals.get(&local.span.start) {
             Some(LocalRole::Named(name)) => name.clone(),
-            _ => super::words::glsl_name(&local.name),
+            _ => local.name.clone(),
         }
     }
 
@@ -228,8 +228,8 @@ impl BodyWriter<'_> {
 
     /// The assignments that give a stage's result to its outputs.
     fn outputs(&self, result: &StageResult, value: &Expression) -> Result<Vec<String>, Diagnostic> {
-        if let ExpressionKind::Name(_, Meaning::Local(number)) = &value.bare().kind
-            && let Some(LocalRole::Stage(_)) = self.writer.locals.get(number)
+        if let ExpressionKind::Name(_, Meaning::Local(numbers)) = &value.bare().kind
+            && let Some(LocalRole::Outputs(_)) = self.writer.role(numbers)
         {
             return Ok(Vec::new());
         }
@@ -237,9 +237,17 @@ impl BodyWriter<'_> {
             return Ok(vec![format!("{variable} = {};", self.value(value)?)]);
         }
         let refused = || untranslated(value.span, "a result that is neither made here nor a `var`");
-        let ExpressionKind::Call { arguments, .. } = &value.bare().kind else {
+        let ExpressionKind::Call { callee: Callee::Construct(_), arguments, .. } =
+            &value.bare().kind
+        else {
             return Err(refused());
         };
+        if let Some(argument) =
+            arguments.iter().find(|argument| reads_outputs(&argument.value, &self.writer))
+        {
+            let what = "a result that is made of what the stage would have returned";
+            return Err(untranslated(argument.value.span, what));
+        }
         let StageResult::Fields(fields) = result else { return Err(refused()) };
         let fields: Vec<_> = match arguments.len() == fields.len() {
             true => fields.iter().collect(),

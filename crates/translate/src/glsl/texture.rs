@@ -3,9 +3,9 @@
 
 use lamplight_diagnostic::Diagnostic;
 
-use super::expression::{Bound, POSTFIX, Writer, Written};
+use super::expression::{Bound, LocalRole, POSTFIX, Writer, Written};
 use super::function::calls_builtin;
-use super::words::{glsl_name, texture_name};
+use super::words::texture_name;
 use crate::tree::{Argument, Expression, ExpressionKind, Meaning, Scalar, Shape, Texture};
 use crate::tree::{TextureKind, Type};
 use crate::wesl::untranslated;
@@ -56,7 +56,7 @@ impl Writer<'_> {
         else {
             return None;
         };
-        let names = (parameter_name(&texture.value)?, parameter_name(&sampler.value)?);
+        let names = (self.parameter_name(&texture.value)?, self.parameter_name(&sampler.value)?);
         let macros = macros_of(ty, *compares).filter(|_| self.has_macros)?;
         Some(format!("{}({}, {})", macros.argument, names.0, names.1))
     }
@@ -77,16 +77,12 @@ impl Writer<'_> {
                 let compares = matches!(sampler.ty, Type::Sampler { compares: true });
                 (self.whole(sampler, indent)?, compares)
             }
-            None => {
-                let found = self.samplers.get(&name).cloned();
-                let found = found.ok_or_else(|| {
-                    untranslated(texture.span, "the size or a texel of a texture without a sampler")
-                        .note("help: GLSL reads textures with samplers: read it with one somewhere")
-                })?;
-                (found, ty.kind == TextureKind::Depth)
-            }
+            None => self.sampler_of(texture).ok_or_else(|| {
+                untranslated(texture.span, "the size or a texel of a texture without a sampler")
+                    .note("help: GLSL reads textures with samplers: read it with one somewhere")
+            })?,
         };
-        if self.has_macros && parameter_name(texture).is_some() {
+        if self.has_macros && self.parameter_name(texture).is_some() {
             let macros = macros_of(ty, compares).ok_or_else(|| {
                 untranslated(texture.span, "a texture that the library has no macros for")
             })?;
@@ -95,6 +91,37 @@ impl Writer<'_> {
         let shadow = if compares { "Shadow" } else { "" };
         let kind = texture_name(ty, "sampler", texture.span)?;
         Ok(format!("{kind}{shadow}({name}, {sampler_name})"))
+    }
+
+    /// A sampler for what is read without one, and whether it compares.
+    fn sampler_of(&self, texture: &Expression) -> Option<(String, bool)> {
+        let ExpressionKind::Name(_, meaning) = &texture.bare().kind else { return None };
+        match meaning {
+            Meaning::Item(path) => {
+                let found = self.samplers.get(path)?;
+                Some((self.names.item(&found.path).to_owned(), found.compares))
+            }
+            Meaning::Local(numbers) => {
+                let [number] = numbers.as_slice() else { return None };
+                let (sampler, compares) = self.pairs.get(number)?;
+                match self.locals.get(sampler)? {
+                    LocalRole::Named(name) => Some((name.clone(), *compares)),
+                    _ => None,
+                }
+            }
+            Meaning::Unknown => None,
+        }
+    }
+
+    /// The name of a parameter, if an expression is one.
+    fn parameter_name(&self, value: &Expression) -> Option<String> {
+        let ExpressionKind::Name(_, Meaning::Local(numbers)) = &value.bare().kind else {
+            return None;
+        };
+        match self.role(numbers)? {
+            LocalRole::Named(name) => Some(name.clone()),
+            _ => None,
+        }
     }
 
     /// The size of a texture in the signed integers that GLSL gives, if the expression is one.
@@ -112,7 +139,12 @@ impl Writer<'_> {
                     Some(level) => self.as_int(&level.value, indent)?,
                     None => "0".to_owned(),
                 };
-                Ok(Some(format!("textureSize({sampler}, {level})")))
+                // The last component is the number of layers.
+                let part = match &arguments[0].value.ty {
+                    Type::Texture(texture) if texture.is_array => ".xy",
+                    _ => "",
+                };
+                Ok(Some(format!("textureSize({sampler}, {level}){part}")))
             }
             _ => Ok(None),
         }
@@ -137,7 +169,7 @@ impl Writer<'_> {
         indent: usize,
     ) -> Written {
         if let Some(size) = self.signed_size(value, indent)? {
-            let ty = super::words::type_name(&value.ty, value.span)?;
+            let ty = self.names.type_name(&value.ty, value.span)?;
             return Ok(Bound(format!("{ty}({size})"), POSTFIX));
         }
         let refused = || untranslated(value.span, format!("`{name}` with these arguments"));
@@ -258,13 +290,5 @@ fn take_first<'a>(
     match rest.is_empty() {
         true => Err(untranslated(call.span, "a texture without coordinates")),
         false => Ok(rest.remove(0)),
-    }
-}
-
-/// The name of a parameter, if an expression is one.
-fn parameter_name(value: &Expression) -> Option<String> {
-    match &value.bare().kind {
-        ExpressionKind::Name(name, Meaning::Local(_)) => Some(glsl_name(name)),
-        _ => None,
     }
 }

@@ -4,16 +4,17 @@ use crate::tree::{Block, Callee, Expression, ExpressionKind, Item, Local, Statem
 
 /// Calls `visit` with every statement of a block, each before what is in it.
 pub fn statements<'a>(block: &'a Block, visit: &mut dyn FnMut(&'a Statement)) {
-    block.nodes.iter().for_each(|node| statement(&node.body, visit));
+    block.nodes.iter().for_each(|node| within_statement(&node.body, visit));
 }
 
-fn statement<'a>(one: &'a Statement, visit: &mut dyn FnMut(&'a Statement)) {
+/// The same with a statement and what is in it.
+pub fn within_statement<'a>(one: &'a Statement, visit: &mut dyn FnMut(&'a Statement)) {
     visit(one);
     match one {
         Statement::If { accept, reject, condition: _ } => {
             statements(accept, visit);
             if let Some(node) = reject {
-                statement(&node.body, visit);
+                within_statement(&node.body, visit);
             }
         }
         Statement::Block(block)
@@ -21,7 +22,7 @@ fn statement<'a>(one: &'a Statement, visit: &mut dyn FnMut(&'a Statement)) {
         | Statement::While { body: block, condition: _ } => statements(block, visit),
         Statement::For { first, condition: _, step, body } => {
             for part in [first, step].into_iter().flatten() {
-                statement(part, visit);
+                within_statement(part, visit);
             }
             statements(body, visit);
         }

@@ -154,6 +154,11 @@ pub const DERIVATIVES: [&str; 12] = [
     "textureSampleCompare",
 ];
 
+/// Whether the language has a function of the name.
+pub fn is_builtin(name: &str) -> bool {
+    RULES.iter().any(|(_, names)| names.contains(&name))
+}
+
 impl Scope<'_> {
     /// The type of a call of a function of the language.
     pub fn builtin(

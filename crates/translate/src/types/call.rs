@@ -106,7 +106,13 @@ impl Scope<'_> {
             let what = format!("no `{}` takes these {} arguments", path.name, arguments.len());
             return Err(mismatch(span, what));
         };
-        if possible.iter().any(|other| other.result != first.result) {
+        let takes = |one: &Signature| -> Vec<Type> {
+            let fields = self.fields(&one.parameters, arguments.len()).unwrap_or_default();
+            fields.into_iter().map(|field| field.ty.clone()).collect()
+        };
+        let differs =
+            |other: &Signature| other.result != first.result || takes(other) != takes(first);
+        if possible.iter().any(|other| differs(other)) {
             let what = format!("`{}` has several types here", path.name);
             return Err(untranslated(span, what));
         }
@@ -219,8 +225,8 @@ impl Scope<'_> {
             return Ok(());
         }
         let globals = self.globals;
-        let members = globals.members(path).unwrap_or_default();
-        let Some(fields) = self.fields(members, arguments.len()) else {
+        let members = globals.members(path);
+        let Some(fields) = self.fields(&members, arguments.len()) else {
             let what = format!("`{}` does not have {} members", path.name, arguments.len());
             return Err(mismatch(span, what));
         };

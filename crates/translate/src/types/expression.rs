@@ -91,7 +91,7 @@ impl Scope<'_> {
                 }
             }
             Type::Structure(path) => {
-                let members = self.globals.members(path).unwrap_or_default();
+                let members = self.globals.members(path);
                 let mut found = members
                     .iter()
                     .filter(|member| member.name == name && !self.is_absent(&member.condition));

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 
-use super::constant::{Folded, default_type, fold};
+use super::constant::{Folded, default_type, fold_all};
 use super::scope::Scope;
 use crate::condition::Condition;
-use crate::tree::whole_conditions;
-use crate::tree::{Count, Field, Function, Import, Item, ItemPath, Module, Node, Space, Type};
+use crate::tree::{Constant, Count, Field, Function, Import, Item, ItemPath, Module, Node, Space};
+use crate::tree::{Type, whole_conditions};
+use crate::wesl::untranslated;
 
 /// What all items of a package are.
 #[derive(Debug, Default)]
@@ -33,8 +34,8 @@ pub enum GlobalKind {
     Structure(Vec<MemberType>),
     Constant {
         ty: Type,
-        /// The value, where it is a number that has no size yet.
-        value: Option<Folded>,
+        /// The values of its components, where it is abstract.
+        value: Option<Vec<Folded>>,
     },
     Variable(Type, Space),
     Alias(Type),
@@ -133,17 +134,33 @@ impl Globals {
         Some(ItemPath { module: segments, name: last.to_owned() })
     }
 
+    /// Whether a module can only mean an item by the item's own name.
+    pub fn is_known_as(&self, module: &[String], path: &ItemPath) -> bool {
+        let imports = self.imports.get(module).into_iter().flatten();
+        let mut aliases = imports.filter(|(_, target)| *target == path).map(|(alias, _)| alias);
+        let is_own = path.module == module;
+        let first = aliases.next();
+        (is_own || first.is_some())
+            && first.into_iter().chain(aliases).all(|alias| *alias == path.name)
+    }
+
     /// The items of a path.
     pub fn items(&self, path: &ItemPath) -> &[Global] {
         self.items.get(path).map_or(&[], Vec::as_slice)
     }
 
-    /// The members of a structure.
-    pub fn members(&self, path: &ItemPath) -> Option<&[MemberType]> {
-        self.items(path).iter().find_map(|global| match &global.kind {
-            GlobalKind::Structure(members) => Some(members.as_slice()),
-            _ => None,
-        })
+    /// The members of a structure, of all of its declarations.
+    pub fn members(&self, path: &ItemPath) -> Vec<MemberType> {
+        let mut found = Vec::new();
+        for Global { condition, kind } in self.items(path) {
+            let GlobalKind::Structure(members) = kind else { continue };
+            let within = |member: &MemberType| MemberType {
+                condition: condition.clone().and(member.condition.clone()),
+                ..member.clone()
+            };
+            found.extend(members.iter().map(within));
+        }
+        found
     }
 
     fn resolve_item(&self, module: &[String], node: &mut Node<Item>, errors: &mut Diagnostics) {
@@ -179,9 +196,12 @@ impl Globals {
     ) -> Result<(), Diagnostic> {
         match ty {
             Type::Array(element, count) => {
-                if let Count::Constant(name) = count {
+                if let Count::Named(name) = count {
+                    let is_constant =
+                        |one: &Global| matches!(one.kind, GlobalKind::Constant { .. });
                     let path = self.meaning(module, name);
-                    *name = path.map_or_else(|| name.clone(), |path| path.name);
+                    let path = path.filter(|path| self.items(path).iter().any(is_constant));
+                    *count = Count::Constant(path.ok_or_else(|| missing(name, span))?);
                 }
                 self.resolve(module, element, span, depth)
             }
@@ -192,16 +212,25 @@ impl Globals {
                         .at(span, "used here")
                 };
                 let path = self.meaning(module, name).ok_or_else(unknown)?;
-                let kind = self.items(&path).first().map(|global| &global.kind);
-                match kind {
-                    Some(GlobalKind::Alias(target)) if depth < ALIASES => {
-                        let mut target = target.clone();
-                        self.resolve(&path.module, &mut target, span, depth + 1)?;
-                        *ty = target;
-                    }
-                    Some(GlobalKind::Structure(_)) => *ty = Type::Structure(path),
-                    _ => return Err(unknown()),
+                let mut meanings = Vec::new();
+                for global in self.items(&path) {
+                    meanings.push(match &global.kind {
+                        GlobalKind::Alias(target) if depth < ALIASES => {
+                            let mut target = target.clone();
+                            self.resolve(&path.module, &mut target, span, depth + 1)?;
+                            target
+                        }
+                        GlobalKind::Structure(_) => Type::Structure(path.clone()),
+                        _ => return Err(unknown()),
+                    });
                 }
+                let first = meanings.first().cloned().ok_or_else(unknown)?;
+                if meanings.iter().any(|other| *other != first) {
+                    let what =
+                        format!("`{name}`, which is several types, each under its condition");
+                    return Err(untranslated(span, what));
+                }
+                *ty = first;
                 Ok(())
             }
             _ => Ok(()),
@@ -214,9 +243,9 @@ impl Globals {
         loop {
             let mut failed = Vec::new();
             for module in modules {
-                for node in &module.items {
+                for (node, condition) in module.items.iter().zip(whole_conditions(&module.items)) {
                     if let Item::Constant(constant) = &node.body {
-                        failed.extend(self.type_constant(module, constant).err());
+                        failed.extend(self.type_constant(module, constant, &condition).err());
                     }
                 }
             }
@@ -231,29 +260,48 @@ impl Globals {
         }
     }
 
+    /// The type and the value of one declaration: others of its name have other conditions.
     fn type_constant(
         &mut self,
         module: &Module,
-        constant: &crate::tree::Constant,
+        constant: &Constant,
+        condition: &Condition,
     ) -> Result<(), Diagnostic> {
         let path = ItemPath { module: module.path.clone(), name: constant.name.clone() };
         let mut value = constant.value.clone();
         let mut scope = Scope::new(self, &module.path);
+        scope.condition = condition.clone();
         scope.expression(&mut value)?;
-        let folded = fold(&value, self).filter(|_| value.ty.is_abstract());
+        let folded = fold_all(&value, self);
         let found = match (&constant.given, constant.id) {
             (Some(given), _) => given.clone(),
             (None, Some(_)) => default_type(&value.ty),
             (None, None) => value.ty,
         };
-        for global in self.items.entry(path).or_default() {
+        let declared = self.items.entry(path).or_default().iter_mut();
+        for global in declared.filter(|global| global.condition == *condition) {
             if let GlobalKind::Constant { ty, value } = &mut global.kind {
                 *ty = found.clone();
-                *value = folded.filter(|_| ty.is_abstract());
+                *value = folded.clone().filter(|_| ty.is_abstract());
             }
         }
         Ok(())
     }
+
+    /// The values of the components of an abstract constant, if they are the same under all
+    /// conditions.
+    pub fn constant(&self, path: &ItemPath) -> Option<&[Folded]> {
+        let mut values = self.items(path).iter().filter_map(|global| match &global.kind {
+            GlobalKind::Constant { value, .. } => Some(value.as_deref()),
+            _ => None,
+        });
+        let first = values.next()??;
+        values.all(|other| other == Some(first)).then_some(first)
+    }
+}
+
+fn missing(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(codes::MISSING_ITEM, format!("there is no `{name}`")).at(span, "used here")
 }
 
 /// The most aliases of aliases that are followed.

@@ -16,7 +16,7 @@ mod statement;
 use lamplight_diagnostic::Diagnostics;
 
 use crate::tree::Module;
-pub use builtin::DERIVATIVES;
+pub use builtin::{DERIVATIVES, is_builtin};
 pub use constant::{Folded, fold};
 pub use global::{Global, GlobalKind, Globals, MemberType, Signature};
 

@@ -52,26 +52,50 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// What a name means here, and its type.
+    /// What a name means here, and its type: every declaration that it may be, from the innermost
+    /// scope outwards, until one of them surely exists.
     pub fn look_up(&self, name: &str, span: Span) -> Result<(Meaning, Type), Diagnostic> {
-        for frame in self.frames.iter().rev() {
-            let declared = frame.get(name).map_or(&[][..], Vec::as_slice);
-            let possible: Vec<&Declared> =
-                declared.iter().filter(|one| !self.is_absent(&one.condition)).collect();
-            let Some(last) = possible.last() else { continue };
-            if possible.iter().any(|one| one.ty != last.ty) {
-                let what = format!("`{name}` has several types here, each under its condition");
-                return Err(untranslated(span, what));
+        let mut possible: Vec<&Declared> = Vec::new();
+        // Where none of those that are found exists.
+        let mut rest = self.condition.clone();
+        let mut is_certain = false;
+        for declared in self.frames.iter().rev().filter_map(|frame| frame.get(name)) {
+            let here: Vec<&Declared> =
+                declared.iter().filter(|one| !is_absent_at(&one.condition, &rest)).collect();
+            for one in &here {
+                rest = rest.and(one.condition.clone().negated());
             }
-            return Ok((Meaning::Local(last.number), last.ty.clone()));
+            possible.extend(here);
+            is_certain = !possible.is_empty() && rest.excludes(&rest);
+            if is_certain {
+                break;
+            }
         }
-        self.look_up_item(name, span)
+        let Some(first) = possible.first() else { return self.look_up_item(name, span) };
+        if possible.iter().any(|one| one.ty != first.ty) {
+            let what = format!("`{name}` has several types here, each under its condition");
+            return Err(untranslated(span, what));
+        }
+        if !is_certain && self.names_value(name, &rest) {
+            let what = format!("`{name}`, which is a local only under some conditions");
+            return Err(untranslated(span, what));
+        }
+        let mut numbers: Vec<u32> = possible.iter().map(|one| one.number).collect();
+        numbers.sort_unstable();
+        Ok((Meaning::Local(numbers), first.ty.clone()))
+    }
+
+    /// Whether a name may mean an item under a condition.
+    fn names_value(&self, name: &str, condition: &Condition) -> bool {
+        let path = self.globals.meaning(self.module, name);
+        let items = path.as_ref().map_or(&[][..], |path| self.globals.items(path));
+        items.iter().any(|global| !is_absent_at(&global.condition, condition))
     }
 
     /// Whether something under a condition surely does not exist here. Where conditions contradict
     /// each other, nothing is reached, and everything exists.
     pub fn is_absent(&self, condition: &Condition) -> bool {
-        condition.excludes(&self.condition) && !self.condition.excludes(&self.condition)
+        is_absent_at(condition, &self.condition)
     }
 
     /// Whether a name means a parameter or a local.
@@ -103,4 +127,8 @@ impl<'a> Scope<'a> {
         }
         Ok((Meaning::Item(path), first))
     }
+}
+
+fn is_absent_at(condition: &Condition, place: &Condition) -> bool {
+    condition.excludes(place) && !place.excludes(place)
 }

@@ -5,8 +5,8 @@ use lamplight_diagnostic::source::Span;
 use lamplight_syntax::wesl::TokenKind;
 
 use super::Reader;
+use crate::tree::Type;
 use crate::tree::{Count, ExpressionKind, NumberValue, Scalar, Shape, Space, Texture, TextureKind};
-use crate::tree::{Type, Unary};
 
 /// Scalars, and the letter that ends the names of their vectors and matrices.
 const SCALARS: [(&str, &str, Scalar); 4] = [
@@ -198,8 +198,7 @@ impl Reader<'_> {
                 _ => Err(refused()),
             },
             ExpressionKind::Axis(name) => Ok(Count::Axis(name)),
-            ExpressionKind::Name(name, _) => Ok(Count::Constant(name)),
-            ExpressionKind::Unary(Unary::Negate, _) => Err(refused()),
+            ExpressionKind::Name(name, _) => Ok(Count::Named(name)),
             _ => Err(refused()),
         }
     }
