@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 
 use crate::kernel::{ECHO, INPUT_WIDTH, Kernel, ParameterKind, ResourceClass, TARGET_WIDTH};
 use lamplight_diagnostic::{Diagnostic, codes};
-use naga::{ArraySize, Handle, Module, ScalarKind, Type, TypeInner};
+use naga::{ArraySize, Handle, ImageClass, ImageDimension, Module, ScalarKind, Type, TypeInner};
 
 /// The name of the texture of inputs.
 pub const INPUTS: &str = "lamplight_inputs";
@@ -30,20 +30,38 @@ pub fn fragment_text(kernel: &Kernel, head: &str) -> Result<String, Diagnostic> 
     })?;
     let mut text = format!("{head}uniform highp usampler2D {INPUTS};\n");
     for parameter in kernel.resources() {
-        if let ResourceClass::Texture { dim, arrayed: _, class } = parameter.class {
-            let shadow = matches!(class, naga::ImageClass::Depth { .. });
-            let kind = match dim {
-                naga::ImageDimension::Cube => "samplerCube",
-                _ => "sampler2D",
-            };
-            let end = if shadow { "Shadow" } else { "" };
+        if let ResourceClass::Texture { dim, arrayed, class } = parameter.class {
+            let kind = sampler_name(dim, arrayed, class).ok_or_else(|| {
+                let message = "this executor has no spelling for a texture of the function";
+                Diagnostic::error(codes::EXECUTOR_LACKS, message)
+            })?;
             let name = texture_name(parameter.binding);
-            let _ = writeln!(text, "uniform highp {kind}{end} {name};");
+            let _ = writeln!(text, "uniform highp {kind} {name};");
         }
     }
     let _ = writeln!(text, "layout(location = 0) out highp uvec4 lamplight_result;\n{source}");
     text += &main_text(kernel)?;
     Ok(text)
+}
+
+/// The type of a combined texture and sampler.
+fn sampler_name(dim: ImageDimension, arrayed: bool, class: ImageClass) -> Option<&'static str> {
+    let is_depth = match class {
+        ImageClass::Sampled { kind: ScalarKind::Float, multi: false } => false,
+        ImageClass::Depth { multi: false } => true,
+        ImageClass::Sampled { .. }
+        | ImageClass::Depth { .. }
+        | ImageClass::Storage { .. }
+        | ImageClass::External => return None,
+    };
+    match (dim, is_depth) {
+        _ if arrayed => None,
+        (ImageDimension::D2, false) => Some("sampler2D"),
+        (ImageDimension::D2, true) => Some("sampler2DShadow"),
+        (ImageDimension::Cube, false) => Some("samplerCube"),
+        (ImageDimension::Cube, true) => Some("samplerCubeShadow"),
+        (ImageDimension::D1 | ImageDimension::D3, _) => None,
+    }
 }
 
 fn main_text(kernel: &Kernel) -> Result<String, Diagnostic> {
@@ -158,8 +176,15 @@ fn type_name(module: &Module, ty: Handle<Type>) -> Result<String, Diagnostic> {
         TypeInner::Matrix { columns, rows, .. } => {
             format!("mat{}x{}", *columns as u32, *rows as u32)
         }
-        TypeInner::Array { base, size: ArraySize::Constant(count), .. } => {
-            format!("{}[{count}]", type_name(module, *base)?)
+        TypeInner::Array { .. } => {
+            // The first length is that of the outermost array.
+            let (mut element, mut lengths) = (ty, String::new());
+            while let TypeInner::Array { base, size, stride: _ } = module.types[element].inner {
+                let ArraySize::Constant(count) = size else { return Err(unknown(module, ty)) };
+                lengths += &format!("[{count}]");
+                element = base;
+            }
+            type_name(module, element)? + &lengths
         }
         TypeInner::Struct { .. } => {
             module.types[ty].name.clone().ok_or_else(|| unknown(module, ty))?
@@ -245,4 +270,28 @@ fn words_of(
         _ => return Err(unknown(module, ty)),
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// GLSL 4.60, section 4.1.9: `vec4[3][2]` is an array of three arrays of two vectors.
+    #[test]
+    fn lengths_of_arrays_go_inwards() {
+        let text = "fn f(a: array<array<i32, 2>, 3>) -> i32 { return a[0][0]; }";
+        let module = naga::front::wgsl::parse_str(text).unwrap();
+        let (_, function) = module.functions.iter().next().unwrap();
+        assert_eq!(type_name(&module, function.arguments[0].ty).ok().as_deref(), Some("int[3][2]"));
+    }
+
+    #[test]
+    fn other_textures_have_no_spelling() {
+        let sampled = ImageClass::Sampled { kind: ScalarKind::Float, multi: false };
+        let integers = ImageClass::Sampled { kind: ScalarKind::Uint, multi: false };
+        assert_eq!(sampler_name(ImageDimension::D2, false, sampled), Some("sampler2D"));
+        assert_eq!(sampler_name(ImageDimension::D2, true, sampled), None);
+        assert_eq!(sampler_name(ImageDimension::D3, false, sampled), None);
+        assert_eq!(sampler_name(ImageDimension::D2, false, integers), None);
+    }
 }
