@@ -31,7 +31,8 @@ pub struct SourceModule<'a> {
 
 /// Translates modules of WESL that belong together to GLSL.
 ///
-/// `enums` names the axes that have named values, for comparisons with the value on the left.
+/// `enums` names all axes that have named values. Either side of a comparison may be the axis then;
+/// a comparison of two other names is refused. If it is empty, the axis must be on the left.
 pub fn wesl_to_glsl(
     sources: &[SourceModule<'_>],
     enums: &[String],

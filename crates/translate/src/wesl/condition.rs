@@ -1,6 +1,7 @@
 //! Conditions of the syntax crate as those of the tree.
 
-use lamplight_diagnostic::Diagnostic;
+use lamplight_diagnostic::source::{SourceId, Span};
+use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_syntax::wesl::{
     self, Chain, ComparisonOperand, ComparisonOperator, ConditionId, Expression, Name, Names,
 };
@@ -17,6 +18,31 @@ pub struct ConditionTable<'a> {
 }
 
 impl ConditionTable<'_> {
+    /// The errors for comparisons of which no side is an axis. Without any axis that is known, the
+    /// axis is on the left.
+    pub fn check_axes(&self, names: &Names, source: SourceId) -> Diagnostics {
+        let is_enum = |name: &Name| self.enums.iter().any(|known| known == names.text(*name));
+        let mut errors = Diagnostics::new();
+        for expression in &self.module.expressions {
+            if let Expression::Compare {
+                left: ComparisonOperand::Name(left, _),
+                right: ComparisonOperand::Name(right, _),
+                operator: _,
+                range,
+            } = expression
+                && !self.enums.is_empty()
+                && !is_enum(left)
+                && !is_enum(right)
+            {
+                let (left, right) = (names.text(*left), names.text(*right));
+                let span = Span { source, start: range.start, end: range.end };
+                let what = format!("neither `{left}` nor `{right}` is an axis with named values");
+                errors.push(Diagnostic::error(codes::WRONG_KIND, what).at(span, "compared here"));
+            }
+        }
+        errors
+    }
+
     /// The condition of a node beside its siblings.
     pub fn branch(&self, id: ConditionId, names: &Names) -> Branch {
         let found = &self.module.conditions[id as usize];

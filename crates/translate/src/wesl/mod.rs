@@ -30,8 +30,12 @@ pub fn read_module(
     let mut names = Names::default();
     let split = split_module(source, Arc::clone(&text), &mut names)?;
     let tokens = Tokens { tokens: &split.tokens, text: &text, names: &names, source };
-    let mut reader =
-        Reader { tokens, at: 0, table: ConditionTable { module: split.module, enums }, depth: 0 };
+    let table = ConditionTable { module: split.module, enums };
+    let errors = table.check_axes(&names, source);
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let mut reader = Reader { tokens, at: 0, table, depth: 0 };
     item::read_items(&mut reader, path, &split.places)
 }
 
