@@ -10,6 +10,7 @@ mod header;
 mod item;
 mod lines;
 mod macros;
+mod meeting;
 mod names;
 mod operator;
 mod order;
@@ -35,8 +36,9 @@ use condition::{chains_of, condition_text, directive};
 use facts::Facts;
 use item::ItemWriter;
 use lines::Indented;
+use meeting::{AllPlaces, check_meetings};
 use names::Names;
-use place::{Exports, Part, exports_of, is_short, place_items, samplers_of};
+use place::{Part, Places, exports_of, is_short, place_items, samplers_of};
 use stage::{Direction, Variables, declared_fields};
 use uses::item_uses;
 
@@ -80,11 +82,20 @@ pub fn print_modules(
     let facts = Facts::of(modules, globals);
     let names = Names::of(modules, macros.keys());
     let exports = exports_of(modules);
-    let printer = Printer { globals, facts: &facts, names: &names, exports: &exports, style };
+    let printer = Printer { globals, facts: &facts, names: &names, style };
     let mut files = Vec::new();
     let mut errors = macros::check_names(modules, &macros);
+    let mut places = AllPlaces::new();
     for module in modules {
-        match printer.module(module) {
+        match place_items(module, &facts, &exports) {
+            Ok(found) => drop(places.insert(module.path.clone(), found)),
+            Err(error) => errors.push(error),
+        }
+    }
+    errors.extend(check_meetings(&places, &names));
+    for module in modules {
+        let Some(places) = places.get(&module.path) else { continue };
+        match printer.module(module, places) {
             Ok(made) => files.extend(made),
             Err(found) => errors.extend(found),
         }
@@ -97,13 +108,11 @@ struct Printer<'a> {
     globals: &'a Globals,
     facts: &'a Facts,
     names: &'a Names,
-    exports: &'a Exports,
     style: &'a Style<'a>,
 }
 
 impl Printer<'_> {
-    fn module(&self, module: &Module) -> Result<Vec<MadeFile>, Diagnostics> {
-        let places = place_items(module, self.facts, self.exports).map_err(|error| vec![error])?;
+    fn module(&self, module: &Module, places: &Places) -> Result<Vec<MadeFile>, Diagnostics> {
         let samplers = samplers_of(module, self.globals);
         let structures = structures_of(module);
         let writer = ItemWriter {

@@ -1,8 +1,8 @@
 //! What items use, and under which conditions.
 
 use crate::condition::Condition;
-use crate::tree::{Block, Callee, Expression, ExpressionKind, Field, Item, ItemPath, Meaning};
-use crate::tree::{Node, Statement, Type, whole_conditions};
+use crate::tree::{Block, Callee, Count, Expression, ExpressionKind, Field, Item, ItemPath};
+use crate::tree::{Meaning, Node, Statement, Type, whole_conditions};
 
 /// Calls `visit` with each item that an item uses, under a condition within it.
 pub fn item_uses(item: &Item, visit: &mut dyn FnMut(&ItemPath, &Condition)) {
@@ -36,7 +36,7 @@ fn field_uses(nodes: &[Node<Field>], visit: &mut dyn FnMut(&ItemPath, &Condition
 
 fn type_uses(ty: &Type, condition: &Condition, visit: &mut dyn FnMut(&ItemPath, &Condition)) {
     super::visit::within(ty, &mut |ty| {
-        if let Type::Structure(path) = ty {
+        if let Type::Structure(path) | Type::Array(_, Count::Constant(path)) = ty {
             visit(path, condition);
         }
     });
