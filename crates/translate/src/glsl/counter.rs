@@ -1,6 +1,6 @@
 //! Loops that count up, and loops that go on early.
 
-use super::visit::targets;
+use super::visit::{own_expressions, statements, targets};
 use crate::tree::{Binary, Block, Expression, ExpressionKind, Meaning, NumberValue, Statement};
 use crate::tree::{Type, Unary};
 
@@ -44,6 +44,23 @@ impl Expression {
     pub fn kind_is_local(&self, number: u32) -> bool {
         matches!(&self.kind, ExpressionKind::Name(_, Meaning::Local(found)) if found.contains(&number))
     }
+}
+
+/// Whether a statement names a local that a body declares.
+pub fn uses_locals(statement: &Statement, body: &Block) -> bool {
+    let mut declared = Vec::new();
+    statements(body, &mut |one| {
+        if let Statement::Local(local) = one {
+            declared.push(local.span.start);
+        }
+    });
+    let mut found = false;
+    for value in own_expressions(statement) {
+        value.walk(&mut |part| {
+            found |= declared.iter().any(|number| part.kind_is_local(*number));
+        });
+    }
+    found
 }
 
 /// Whether a body has a `continue` of its own.

@@ -1,6 +1,7 @@
 //! Functions of WGSL as those of GLSL.
 
 use super::expression::{Bound, CHOICE, POSTFIX, Writer, Written, listed};
+use super::range::is_at_most;
 use crate::tree::{Argument, Binary, Callee, Expression, ExpressionKind, Scalar, Type};
 use crate::wesl::untranslated;
 
@@ -60,6 +61,14 @@ impl Writer<'_> {
                 self.select(&reject.value, &accept.value, &condition.value, indent)
             }
             ("saturate", [_]) => Ok(called(format!("clamp({}, 0.0, 1.0)", whole(0)?))),
+            // GLSL leaves the result open where the bounds are the wrong way round.
+            ("clamp", [_, low, high]) if !is_at_most(&low.value, &high.value, &self.counters) => {
+                Ok(called(format!("min(max({}, {}), {})", whole(0)?, whole(1)?, whole(2)?)))
+            }
+            // GLSL has it of signed numbers.
+            ("abs", [argument]) if argument.value.ty.scalar() == Some(Scalar::U32) => {
+                self.bound(&argument.value, indent)
+            }
             ("all" | "any", [argument]) => self.truth(name, &argument.value, indent),
             ("arrayLength", [argument]) => {
                 let array = self.operand(&argument.value, POSTFIX, indent)?;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::tree::Unary;
 use crate::tree::{Binary, Callee, Expression, ExpressionKind, Meaning, NumberValue, Scalar, Type};
 
 /// The least and the largest value of a number, as far as they are known.
@@ -35,6 +36,29 @@ pub fn range_of(value: &Expression, counters: &Counters) -> Range {
     }
 }
 
+/// Whether one number is surely at most another one.
+pub fn is_at_most(low: &Expression, high: &Expression, counters: &Counters) -> bool {
+    let of = |value: &Expression| range_of(value, counters);
+    if of(low).most <= of(high).least {
+        return true;
+    }
+    // `x - a` and `x + b`, which cannot wrap around.
+    match (&low.bare().kind, &high.bare().kind) {
+        (
+            ExpressionKind::Binary { operator: Binary::Subtract, left, right: below, .. },
+            ExpressionKind::Binary { operator: Binary::Add, left: other, right: above, .. },
+        ) => {
+            let is_same = matches!(
+                (&left.bare().kind, &other.bare().kind),
+                (ExpressionKind::Name(_, one), ExpressionKind::Name(_, two)) if one == two
+            );
+            let is_natural = of(below).least >= 0.0 && of(above).least >= 0.0;
+            is_same && is_natural && low.ty.scalar() == Some(Scalar::F32)
+        }
+        _ => false,
+    }
+}
+
 fn whole_range(ty: &Type) -> Range {
     let (least, most) = match ty.scalar() {
         Some(Scalar::U32) => (0.0, f64::from(u32::MAX)),
@@ -60,6 +84,10 @@ fn known_range(value: &Expression, counters: &Counters) -> Option<Range> {
             ranges?.into_iter().reduce(Range::union)
         }
         ExpressionKind::Parenthesised(inner) => Some(of(inner)),
+        ExpressionKind::Unary(Unary::Negate, inner) => {
+            let Range { least, most } = of(inner);
+            Some(Range { least: -most, most: -least })
+        }
         ExpressionKind::Binary { operator, left, right, .. } => {
             binary_range(*operator, of(left), of(right), value.ty.scalar())
         }
@@ -132,9 +160,10 @@ fn binary_range(
 
 fn function_range(name: &str, ranges: &[Range]) -> Option<Range> {
     match (name, ranges) {
+        // The lower one of the bounds is the last word if they are the wrong way round.
         ("clamp", [value, low, high]) => Some(Range {
-            least: value.least.max(low.least).min(high.least.max(low.least)),
-            most: value.most.min(high.most).max(low.most),
+            least: value.least.max(low.least).min(high.least),
+            most: value.most.max(low.most).min(high.most),
         }),
         ("min", [left, right]) => {
             Some(Range { least: left.least.min(right.least), most: left.most.min(right.most) })

@@ -337,7 +337,11 @@ impl BodyWriter<'_> {
         }
         let mut step = String::new();
         if let (true, [node]) = (continues, steps) {
-            step = self.simple(&node.body)?.unwrap_or_default();
+            // GLSL's `for` takes its step outside of the scope of the body.
+            let is_local = matches!(node.body, Statement::Local(_));
+            if !is_local && !super::counter::uses_locals(&node.body, body) {
+                step = self.simple(&node.body)?.unwrap_or_default();
+            }
             if step.is_empty() || node.branch.is_some() {
                 return Err(untranslated(node.span, "this `continuing` after a `continue`"));
             }
