@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use lamplight_diagnostic::render::{Form, render};
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_testing::snapshot;
-use lamplight_translate::glsl::Style;
+use lamplight_translate::glsl::{MadeFile, Style};
 use lamplight_translate::{SourceModule, wesl_to_glsl};
 use libtest_mimic::{Failed, Trial};
+
+use crate::compiler;
 
 const STYLE: Style<'static> =
     Style { command: None, guard: "TEST", sampling: Some("sampling"), prefix: None };
@@ -31,14 +33,19 @@ fn folder() -> PathBuf {
 }
 
 fn check(name: &str) -> Result<(), Failed> {
-    snapshot::check("translate", name, &translated(name))
+    let (text, files) = translated(name);
+    snapshot::check("translate", name, &text)?;
+    for file in &files {
+        compiler::compiles(file, &files)?;
+    }
+    Ok(())
 }
 
-/// What becomes of a file: the texts, or the errors.
-fn translated(name: &str) -> String {
+/// What becomes of a file: the texts, or the errors; and the files.
+fn translated(name: &str) -> (String, Vec<MadeFile>) {
     let mut names = vec![name.to_owned()];
-    // One of the files imports another one.
-    names.extend((name == "conditions").then(|| "pointers".to_owned()));
+    // Some of the files import another one.
+    names.extend(IMPORTING.contains(&name).then(|| "pointers".to_owned()));
     let mut sources = SourceSet::default();
     let texts: Vec<(String, String)> = names
         .into_iter()
@@ -55,11 +62,18 @@ fn translated(name: &str) -> String {
             text,
         })
         .collect();
-    match wesl_to_glsl(&modules, &[], &STYLE) {
+    let enums: Vec<String> = ENUMS.iter().map(|name| (*name).to_owned()).collect();
+    match wesl_to_glsl(&modules, &enums, &STYLE) {
         Ok(files) => {
             let own = files.iter().filter(|file| file.path.starts_with(name));
-            own.map(|file| format!("--- {}\n{}", file.path, file.text)).collect()
+            (own.map(|file| format!("--- {}\n{}", file.path, file.text)).collect(), files)
         }
-        Err(problems) => render(&sources, &problems, Form::Human),
+        Err(problems) => (render(&sources, &problems, Form::Human), Vec::new()),
     }
 }
+
+/// The files that import `pointers`.
+const IMPORTING: [&str; 2] = ["conditions", "refused_meeting"];
+
+/// The axes of the files that have named values.
+const ENUMS: [&str; 1] = ["quality"];

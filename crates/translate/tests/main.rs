@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod compiler;
 mod constructs;
 mod hostile;
-mod library;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[constructs::tests, hostile::tests, library::tests])
+    lamplight_testing::run_tests(&[constructs::tests, hostile::tests])
 }

@@ -399,8 +399,11 @@ impl Writer<'_> {
             | ExpressionKind::Member(inner, _)
             | ExpressionKind::Convert(inner) => self.is_cheap(inner),
             ExpressionKind::Index(object, index) => self.is_cheap(object) && self.is_cheap(index),
-            // Each may be written twice in its turn, and so on: the text would double each time.
-            ExpressionKind::Binary { .. } => false,
+            // What writes its own operands twice would double the text each time.
+            ExpressionKind::Binary { operator: Binary::Divide | Binary::Remainder, .. } => false,
+            ExpressionKind::Binary { left, right, .. } => {
+                self.is_cheap(left) && self.is_cheap(right)
+            }
             ExpressionKind::Call { callee: Callee::Construct(_), arguments, .. } => {
                 arguments.iter().all(|argument| self.is_cheap(&argument.value))
             }

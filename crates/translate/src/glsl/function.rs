@@ -75,14 +75,8 @@ impl Writer<'_> {
                 Ok(called(format!("uint({array}.length())")))
             }
             ("workgroupBarrier", []) => Ok(called("barrier()".to_owned())),
-            ("countLeadingZeros", [argument]) if is_scalar(argument) => {
-                let ty = if value.ty == Type::U32 { "uint(" } else { "(" };
-                Ok(called(format!("{ty}31 - findMSB(uint({})))", whole(0)?)))
-            }
-            ("countTrailingZeros", [argument])
-                if is_scalar(argument) && self.is_cheap(&argument.value) =>
-            {
-                Ok(trailing_zeros(&whole(0)?, value.ty == Type::U32))
+            ("countLeadingZeros" | "countTrailingZeros", [argument]) if is_scalar(argument) => {
+                self.zeros(name, &argument.value, value, indent)
             }
             ("countLeadingZeros" | "countTrailingZeros", _) => {
                 Err(untranslated(value.span, format!("the function `{name}` of this argument")))
@@ -95,6 +89,32 @@ impl Writer<'_> {
             }
             _ => self.plain_function(name, arguments, value, is_broken, indent),
         }
+    }
+
+    /// The number of zeros before or behind all ones. GLSL finds no bit in 0, where WGSL counts all.
+    fn zeros(
+        &self,
+        name: &str,
+        argument: &Expression,
+        value: &Expression,
+        indent: usize,
+    ) -> Written {
+        let is_unsigned = value.ty == Type::U32;
+        let text = self.whole(argument, indent)?;
+        if name == "countLeadingZeros" {
+            let ty = if is_unsigned { "uint(" } else { "(" };
+            return Ok(called(format!("{ty}31 - findMSB(uint({text})))")));
+        }
+        if !self.is_cheap(argument) {
+            let what = format!("the function `{name}` of this argument");
+            return Err(untranslated(value.span, what));
+        }
+        let compared = self.operand(argument, 8, indent)?;
+        let choice = match is_unsigned {
+            true => format!("{compared} == 0u ? 32u : uint(findLSB({text}))"),
+            false => format!("{compared} == 0 ? 32 : findLSB({text})"),
+        };
+        Ok(Bound(choice, CHOICE))
     }
 
     fn plain_function(
@@ -176,15 +196,6 @@ impl Writer<'_> {
 
 fn called(text: String) -> Bound {
     Bound(text, POSTFIX)
-}
-
-/// GLSL finds no bit in 0, where WGSL counts all of them.
-fn trailing_zeros(text: &str, is_unsigned: bool) -> Bound {
-    let choice = match is_unsigned {
-        true => format!("{text} == 0u ? 32u : uint(findLSB({text}))"),
-        false => format!("{text} == 0 ? 32 : findLSB({text})"),
-    };
-    Bound(choice, CHOICE)
 }
 
 fn is_scalar(argument: &Argument) -> bool {

@@ -15,15 +15,19 @@ pub struct ConditionTable<'a> {
     pub module: wesl::Module,
     /// The axes with named values, for comparisons that have the value on the left.
     pub enums: &'a [String],
+    /// The number of expressions whose axes are checked.
+    pub checked: usize,
 }
 
 impl ConditionTable<'_> {
-    /// The errors for comparisons of which no side is an axis. Without any axis that is known, the
-    /// axis is on the left.
-    pub fn check_axes(&self, names: &Names, source: SourceId) -> Diagnostics {
+    /// The errors for comparisons, new since the last call, of which no side is an axis. Without any
+    /// axis that is known, the axis is on the left.
+    pub fn check_axes(&mut self, names: &Names, source: SourceId) -> Diagnostics {
         let is_enum = |name: &Name| self.enums.iter().any(|known| known == names.text(*name));
         let mut errors = Diagnostics::new();
-        for expression in &self.module.expressions {
+        let new = self.checked..self.module.expressions.len();
+        self.checked = new.end;
+        for expression in &self.module.expressions[new] {
             if let Expression::Compare {
                 left: ComparisonOperand::Name(left, _),
                 right: ComparisonOperand::Name(right, _),
@@ -146,6 +150,10 @@ impl Reader<'_> {
         let tokens = self.tokens;
         let found = wesl::read_attributes(&mut self.table.module, tokens, self.at, chain);
         if let Some(error) = self.table.module.take_errors().into_iter().next() {
+            return Err(error);
+        }
+        let errors = self.table.check_axes(tokens.names, tokens.source);
+        if let Some(error) = errors.into_iter().next() {
             return Err(error);
         }
         let id = found.condition.filter(|_| found.conditional);

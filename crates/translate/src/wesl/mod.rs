@@ -30,7 +30,7 @@ pub fn read_module(
     let mut names = Names::default();
     let split = split_module(source, Arc::clone(&text), &mut names)?;
     let tokens = Tokens { tokens: &split.tokens, text: &text, names: &names, source };
-    let table = ConditionTable { module: split.module, enums };
+    let mut table = ConditionTable { module: split.module, enums, checked: 0 };
     let errors = table.check_axes(&names, source);
     if !errors.is_empty() {
         return Err(errors);
