@@ -7,6 +7,7 @@ use super::global::Globals;
 use super::scope::Scope;
 use crate::condition::Condition;
 use crate::tree::{Block, Function, Item, Local, Module, Node, Statement, Type, whole_conditions};
+use crate::wesl::untranslated;
 
 /// Types everything in a module.
 pub fn check_module(globals: &Globals, module: &mut Module, errors: &mut Diagnostics) {
@@ -75,7 +76,13 @@ fn check_nodes(
     let outer = scope.condition.clone();
     for (node, condition) in nodes.iter_mut().zip(conditions) {
         scope.condition = outer.clone().and(condition);
-        check_statement(scope, &mut node.body, result)?;
+        let found = check_statement(scope, &mut node.body, result);
+        // Which of several declarations is meant has no answer where nothing is reached.
+        let is_reached = || !scope.condition.excludes(&scope.condition);
+        found.map_err(|error| match is_reached() {
+            true => error,
+            false => untranslated(node.span, "a statement whose conditions contradict each other"),
+        })?;
     }
     scope.condition = outer;
     Ok(())
