@@ -58,8 +58,10 @@ struct Inner {
     row: array<i32, 4>,
 }
 
-const SIZE = 3;
-const SCALE: f32 = 0.5;
+@if(warm) const SIZE = 3;
+@else const SIZE = 5;
+@if(wide) const SCALE: f32 = 0.5;
+@else const SCALE: f32 = 0.25;
 
 var<private> calls: u32;
 
@@ -81,6 +83,27 @@ fn first(x: i32) -> i32 {
 
 ";
 
+/// The head with its conditions decided.
+fn chosen_head(flags: [bool; 2]) -> String {
+    let mut text = String::new();
+    let mut holds = false;
+    for line in HEAD.split_inclusive('\n') {
+        let given = FLAGS.iter().zip(flags).find_map(|(name, flag)| {
+            let rest = line.strip_prefix(&format!("@if({name}) "))?;
+            Some((rest, flag))
+        });
+        match (given, line.strip_prefix("@else ")) {
+            (Some((rest, flag)), _) => {
+                holds = flag;
+                text += if flag { rest } else { "" };
+            }
+            (None, Some(rest)) => text += if holds { "" } else { rest },
+            (None, None) => text += line,
+        }
+    }
+    text
+}
+
 /// Makes a program. GLSL ES 3.00 has no functions that count bits.
 pub fn program(seed: u64, has_bits: bool) -> Program {
     let mut random = Random(seed);
@@ -89,9 +112,10 @@ pub fn program(seed: u64, has_bits: bool) -> Program {
         random,
         flags,
         text: HEAD.to_owned(),
-        chosen: HEAD.to_owned(),
+        chosen: chosen_head(flags),
         is_live: true,
         scopes: vec![Vec::new()],
+        declared: vec![Vec::new()],
         named: 0,
         depth: 1,
         has_bits,
@@ -124,7 +148,10 @@ struct Maker {
     chosen: String,
     /// Whether the conditions around hold.
     is_live: bool,
+    /// What can be named, by the scope or the condition that it is declared in.
     scopes: Vec<Vec<Var>>,
+    /// The names that the scopes have themselves, whether their conditions hold or not.
+    declared: Vec<Vec<String>>,
     named: usize,
     depth: usize,
     has_bits: bool,
@@ -143,32 +170,88 @@ impl Maker {
         self.line(&line);
     }
 
+    /// A name that the scope does not have yet. Few of them, so that they hide each other; some
+    /// are words of GLSL, or names that are made for something else.
     fn fresh(&mut self) -> String {
+        let words = [
+            "sample",
+            "half",
+            "input",
+            "float",
+            "cosh",
+            "mix",
+            "n",
+            "k",
+            "zero_pair",
+            "n_inner",
+            "sample_",
+            "texture",
+            "v",
+            "zero",
+        ];
+        let name = *self.random.pick(&words);
+        let is_taken =
+            self.declared.last().is_some_and(|names| names.iter().any(|known| known == name));
+        if is_taken {
+            return self.unique();
+        }
+        self.take(name);
+        name.to_owned()
+    }
+
+    /// A name that nothing else has.
+    fn unique(&mut self) -> String {
         self.named += 1;
-        // Some names hide others, and some are words of GLSL.
-        let words = ["sample", "filter", "half", "out", "mod", "mix"];
-        match self.random.below(12) {
-            0 if self.named < 400 => format!("{}{}", self.random.pick(&words), self.named),
-            _ => format!("v{}", self.named),
+        let name = format!("v{}", self.named);
+        self.take(&name);
+        name
+    }
+
+    /// Makes a name one that the scope has itself.
+    fn take(&mut self, name: &str) {
+        if let Some(names) = self.declared.last_mut() {
+            names.push(name.to_owned());
         }
     }
 
+    fn open(&mut self) {
+        self.scopes.push(Vec::new());
+        self.declared.push(Vec::new());
+    }
+
+    fn close(&mut self) {
+        self.scopes.pop();
+        self.declared.pop();
+    }
+
+    /// Makes a local known from here on.
+    fn know(&mut self, name: String, ty: Ty, is_variable: bool) {
+        if let Some(scope) = self.scopes.last_mut() {
+            scope.push(Var { name, ty, is_variable });
+        }
+    }
+
+    /// Something of a type that is not hidden.
     fn var(&mut self, ty: Ty, is_variable: bool) -> Option<String> {
-        let all: Vec<String> = self
-            .scopes
-            .iter()
-            .flatten()
-            .filter(|one| one.ty == ty && (one.is_variable || !is_variable))
-            .map(|one| one.name.clone())
-            .collect();
+        let mut seen: Vec<&str> = Vec::new();
+        let mut all = Vec::new();
+        for one in self.scopes.iter().rev().flat_map(|scope| scope.iter().rev()) {
+            if seen.contains(&one.name.as_str()) {
+                continue;
+            }
+            seen.push(&one.name);
+            if one.ty == ty && (one.is_variable || !is_variable) {
+                all.push(one.name.clone());
+            }
+        }
         if all.is_empty() { None } else { Some(self.random.pick(&all).clone()) }
     }
 
     fn declare(&mut self, ty: Ty, is_variable: bool) {
-        let name = self.fresh();
         let keyword = if is_variable { "var" } else { "let" };
         let is_zero = is_variable && self.random.chance(25);
         let value = self.value(ty, 3);
+        let name = self.fresh();
         match is_zero {
             true => self.indented(&format!("var {name}: {};", spelled(ty))),
             false if self.random.chance(30) => {
@@ -176,9 +259,7 @@ impl Maker {
             }
             false => self.indented(&format!("{keyword} {name} = {value};")),
         }
-        if let Some(scope) = self.scopes.last_mut() {
-            scope.push(Var { name, ty, is_variable });
-        }
+        self.know(name, ty, is_variable);
     }
 
     fn statements(&mut self, count: usize, nesting: usize, in_loop: bool) {
@@ -188,12 +269,12 @@ impl Maker {
     }
 
     fn inner(&mut self, nesting: usize, in_loop: bool) {
-        self.scopes.push(Vec::new());
+        self.open();
         self.depth += 1;
         let count = 1 + self.random.below(3);
         self.statements(count, nesting + 1, in_loop);
         self.depth -= 1;
-        self.scopes.pop();
+        self.close();
     }
 
     fn statement(&mut self, nesting: usize, in_loop: bool) {
@@ -282,9 +363,7 @@ impl Maker {
             (2, Some(pair)) => {
                 let name = self.fresh();
                 self.indented(&format!("let {name} = {bool} || later({int}, &{pair});"));
-                if let Some(scope) = self.scopes.last_mut() {
-                    scope.push(Var { name, ty: Ty::Bool, is_variable: false });
-                }
+                self.know(name, Ty::Bool, false);
             }
             _ => self.indented(&format!("_ = stepped(&state, {uint});")),
         }
@@ -307,26 +386,32 @@ impl Maker {
     }
 
     fn counted(&mut self, nesting: usize) {
-        let (name, bound) = (self.fresh(), 1 + self.random.below(5));
-        let is_signed = self.random.chance(50);
+        let (bound, is_signed) = (1 + self.random.below(5), self.random.chance(50));
         let (ty, end) = if is_signed { (Ty::Int, "") } else { (Ty::Uint, "u") };
+        self.open();
+        let name = self.fresh();
         self.indented(&format!("for (var {name} = 0{end}; {name} < {bound}{end}; {name}++) {{"));
-        self.scopes.push(vec![Var { name: name.clone(), ty, is_variable: false }]);
-        if self.random.chance(30) {
+        self.know(name.clone(), ty, false);
+        self.open();
+        self.depth += 1;
+        if self.random.chance(40) {
             // A local of the body hides the variable of the loop.
-            self.depth += 1;
             let value = self.value(ty, 2);
+            self.take(&name);
             self.indented(&format!("let {name} = {value};"));
             self.indented(&format!("hash += u32({name});"));
-            self.depth -= 1;
+            self.know(name, ty, false);
         }
-        self.inner(nesting, true);
-        self.scopes.pop();
+        let count = 1 + self.random.below(3);
+        self.statements(count, nesting + 1, true);
+        self.depth -= 1;
+        self.close();
+        self.close();
         self.indented("}");
     }
 
     fn endless(&mut self, nesting: usize) {
-        let name = self.fresh();
+        let name = self.unique();
         self.indented(&format!("var {name} = 0;"));
         self.indented("loop {");
         self.indented(&format!("    if {name} > 3 {{"));
@@ -372,21 +457,64 @@ impl Maker {
         self.indented("}");
     }
 
-    /// Statements under a flag, and others where it is off.
+    /// Statements under a flag, and others where it is off. They stand in the scope around them:
+    /// what both declare can be named behind them, and so can what hides something.
     fn conditional(&mut self, nesting: usize, in_loop: bool) {
         let flag = self.random.below(FLAGS.len());
         let (name, is_on, was_live) = (FLAGS[flag], self.flags[flag], self.is_live);
         let pad = "    ".repeat(self.depth);
+        let ty = self.random.pick(&TYPES).0;
+        let common = self.random.chance(60).then(|| self.fresh());
+        // A name of an outer scope that one of the arms hides.
+        let hiding = if self.random.chance(40) { self.hideable(ty) } else { None };
+        let before = self.declared.last().cloned().unwrap_or_default();
+        let mut after = before.clone();
         for (head, holds) in [(format!("@if({name})"), is_on), ("@else".to_owned(), !is_on)] {
             let _ = writeln!(self.text, "{pad}{head} {{");
             self.is_live = was_live && holds;
+            self.declared.pop();
+            self.declared.push(before.clone());
             self.scopes.push(Vec::new());
+            if let Some(common) = &common {
+                let value = self.value(ty, 2);
+                self.indented(&format!("let {common}: {} = {value};", spelled(ty)));
+                self.know(common.clone(), ty, false);
+            }
+            if let Some(hiding) = hiding.as_ref().filter(|_| head.starts_with("@if")) {
+                let value = self.value(ty, 2);
+                self.indented(&format!("let {hiding} = {value};"));
+                self.know(hiding.clone(), ty, false);
+            }
             let count = 1 + self.random.below(2);
             self.statements(count, nesting + 1, in_loop);
             self.scopes.pop();
+            after.extend(self.declared.last().cloned().unwrap_or_default());
             self.is_live = was_live;
             let _ = writeln!(self.text, "{pad}}}");
         }
+        // Names of one of the arms may hide others behind it: these are not used any more.
+        let hidden: Vec<String> =
+            after.iter().filter(|one| !before.contains(one)).cloned().collect();
+        for scope in &mut self.scopes {
+            scope.retain(|one| !hidden.contains(&one.name));
+        }
+        self.declared.pop();
+        self.declared.push(after);
+        for name in [common, hiding].into_iter().flatten() {
+            self.know(name, ty, false);
+        }
+    }
+
+    /// The name of something of an outer scope, which this one has now.
+    fn hideable(&mut self, ty: Ty) -> Option<String> {
+        let name =
+            self.var(ty, false).filter(|name| !["a", "b", "c", "x"].contains(&name.as_str()))?;
+        let names = self.declared.last_mut()?;
+        if names.contains(&name) {
+            return None;
+        }
+        names.push(name.clone());
+        Some(name)
     }
 
     fn index(&mut self) -> String {
