@@ -80,6 +80,10 @@ impl<'a> Checker<'a> {
                 Candidate { params: params.collect() }
             })
             .collect();
+        let exact = candidates.iter().any(|candidate| self.cost(candidate, values) == Some(0));
+        if !exact && self.fits_builtin_exactly(name, values) {
+            return Ok(None);
+        }
         let Some(chosen) = self.choose(name, &candidates, values, at)? else {
             let known = find_function(name).is_some() || find_texture_function(name).is_some();
             return if known { Ok(None) } else { self.fail_arguments(name, values, at) };
@@ -90,6 +94,26 @@ impl<'a> Checker<'a> {
         self.calls.insert(function);
         let ty = self.shader.functions[function as usize].ret.clone();
         Ok(Some(Expr { kind: ExprKind::Call(function, arguments), ty, at, known: None }))
+    }
+
+    /// Whether a function of the language takes arguments without a conversion.
+    fn fits_builtin_exactly(&self, name: &str, values: &[Expr]) -> bool {
+        if let Some(function) = find_function(name) {
+            return function.signatures(values.len()).iter().any(|signature| {
+                let candidate = Candidate { params: signature.params.clone() };
+                self.cost(&candidate, values) == Some(0)
+            });
+        }
+        let (Some(access), Some(Type::Opaque(opaque))) =
+            (find_texture_function(name), values.first().map(|value| &value.ty))
+        else {
+            return false;
+        };
+        let types = || values[1..].iter().map(|value| &value.ty);
+        forms_of(access, opaque).iter().any(|form| {
+            let least = form.params.len() - form.optional;
+            values.len() > least && form.params.iter().take(values.len() - 1).eq(types())
+        })
     }
 
     /// Arguments as the types of parameters; those that are written are checked.
