@@ -320,6 +320,8 @@ impl<'a> Checker<'a> {
         var.layout.packing = var.layout.packing.or(packing).or(match place {
             // Push constants are packed tightly unless they say otherwise.
             Place::UniformBlock if var.layout.push => Some(Packing::Std430),
+            // Vulkan's default; OpenGL leaves the layout of such a buffer open.
+            Place::StorageBlock => Some(Packing::Std430),
             _ => Some(Packing::Std140),
         });
         var.layout.row_major = var.layout.row_major.or(rows);
