@@ -331,6 +331,46 @@ pub struct Expr {
     pub known: Option<Known>,
 }
 
+impl Expr {
+    /// Calls a function with this expression and with each one in it.
+    pub fn each_part<'e>(&'e self, visit: &mut dyn FnMut(&'e Self)) {
+        visit(self);
+        match &self.kind {
+            ExprKind::Literal(..) | ExprKind::Var(_) | ExprKind::Kept(_) => {}
+            ExprKind::Unary(_, a)
+            | ExprKind::Step(_, _, a)
+            | ExprKind::Convert(a)
+            | ExprKind::Swizzle(a, _)
+            | ExprKind::Member(a, _)
+            | ExprKind::Length(a) => a.each_part(visit),
+            ExprKind::Binary(_, a, b)
+            | ExprKind::Logic(_, a, b)
+            | ExprKind::Assign(_, a, b)
+            | ExprKind::Comma(a, b)
+            | ExprKind::Index(a, b) => {
+                a.each_part(visit);
+                b.each_part(visit);
+            }
+            ExprKind::Ternary(a, b, c) => [a, b, c].iter().for_each(|part| part.each_part(visit)),
+            ExprKind::Call(_, parts)
+            | ExprKind::Builtin(_, parts)
+            | ExprKind::Texture(_, parts)
+            | ExprKind::Construct(parts) => parts.iter().for_each(|part| part.each_part(visit)),
+        }
+    }
+
+    /// Whether it names a variable for which something holds.
+    pub fn names(&self, holds: &dyn Fn(u32) -> bool) -> bool {
+        let mut found = false;
+        self.each_part(&mut |part| {
+            if let ExprKind::Var(index) = part.kind {
+                found |= holds(index);
+            }
+        });
+        found
+    }
+}
+
 /// What an expression is.
 #[derive(Debug, Clone)]
 pub enum ExprKind {

@@ -1,7 +1,8 @@
 //! Functions of the language: WGSL's own, operators, or functions that are added.
 
 use super::Writer;
-use super::value::{Strength, Value};
+use super::path::has_effects;
+use super::value::{Strength, Value, list_text};
 use crate::builtin::functions::{ATOMICS, BARRIERS};
 use crate::lexer::At;
 use crate::tree::{Expr, Number};
@@ -60,40 +61,28 @@ impl Writer<'_> {
         let refs: Vec<&Expr> = arguments.iter().collect();
         let suffixed = self.suffixed;
         self.suffixed |= arguments.iter().all(|argument| argument.known.is_some());
-        let values = self.operands(&refs);
+        let mut values = self.operands(&refs);
         self.suffixed = suffixed;
         let stable = values.iter().all(|value| value.stable);
-        let texts: Vec<String> = arguments
-            .iter()
-            .zip(&values)
-            .map(|(argument, value)| {
-                let wide = EQUAL_ARGUMENTS.contains(&name)
-                    && matches!((&argument.ty, &expr.ty), (Type::Scalar(_), Type::Vector(..)));
-                if wide {
-                    format!("{}({})", self.type_text(&expr.ty), value.text)
-                } else {
-                    value.text.clone()
-                }
-            })
-            .collect();
-        let mut value = self.mapped(name, arguments, &values, texts, expr);
+        for (argument, value) in arguments.iter().zip(&mut values) {
+            let wide = EQUAL_ARGUMENTS.contains(&name)
+                && matches!((&argument.ty, &expr.ty), (Type::Scalar(_), Type::Vector(..)));
+            if wide {
+                let text = format!("{}({})", self.type_text(&expr.ty), value.text);
+                *value = Value::primary(text, value.stable);
+            }
+        }
+        let mut value = self.mapped(name, arguments, &values, expr);
         value.stable = stable;
         value
     }
 
-    fn mapped(
-        &mut self,
-        name: &str,
-        arguments: &[Expr],
-        values: &[Value],
-        texts: Vec<String>,
-        expr: &Expr,
-    ) -> Value {
-        let list = texts.join(", ");
+    fn mapped(&mut self, name: &str, arguments: &[Expr], values: &[Value], expr: &Expr) -> Value {
+        let list = list_text(values);
         let scalar = matches!(arguments.first().map(|first| &first.ty), Some(Type::Scalar(_)));
         if let Some((_, op)) = OPERATORS.iter().find(|(known, _)| *known == name) {
             let (left, right) =
-                (values[0].at_least(Strength::Shift), values[1].at_least(Strength::Shift));
+                (values[0].at_least(Strength::Sum), values[1].at_least(Strength::Sum));
             let text = format!("{left} {op} {right}");
             return Value { text, strength: Strength::Relation, stable: false };
         }
@@ -110,7 +99,7 @@ impl Writer<'_> {
                 format!("bitcast<{}>({list})", self.type_text(&expr.ty))
             }
             (_, _) if name.starts_with("bit") || name.starts_with("find") => {
-                self.bits(name, &texts, &expr.ty)
+                self.bits(name, values, &expr.ty)
             }
             ("length", _) if scalar => format!("abs({list})"),
             ("normalize", _) if scalar => format!("sign({list})"),
@@ -129,8 +118,9 @@ impl Writer<'_> {
     }
 
     /// Functions of single bits.
-    fn bits(&mut self, name: &str, texts: &[String], ty: &Type) -> String {
-        let list = texts.join(", ");
+    fn bits(&mut self, name: &str, values: &[Value], ty: &Type) -> String {
+        let list = list_text(values);
+        let texts: Vec<&str> = values.iter().map(|value| value.text.as_str()).collect();
         let result = self.type_text(ty);
         match name {
             "bitCount" => format!("{result}(countOneBits({list}))"),
@@ -241,10 +231,14 @@ impl Writer<'_> {
     fn two_results(&mut self, name: &str, arguments: &[Expr], expr: &Expr) -> Value {
         let count = arguments.len() - 1;
         let refs: Vec<&Expr> = arguments[..count].iter().collect();
-        let pinned = std::mem::replace(&mut self.pinned, true);
-        let values = self.operands(&refs);
-        let target = self.fixed(&arguments[count]);
         let at = expr.at;
+        let mut values = self.operands(&refs);
+        if has_effects(&arguments[count], self.shader) {
+            for value in &mut values {
+                *value = Value::primary(self.kept(at, value), true);
+            }
+        }
+        let target = self.with_kept_indices(&arguments[count]);
         let result = self.temporary();
         let (second, first) = match name {
             "modf" | "frexp" => {
@@ -267,7 +261,6 @@ impl Writer<'_> {
             }
         };
         self.write_back(&target, &second);
-        self.pinned = pinned;
         Value::primary(first, true)
     }
 
@@ -291,14 +284,14 @@ impl Writer<'_> {
     }
 
     fn atomic(&mut self, name: &str, arguments: &[Expr], expr: &Expr) -> Value {
-        let pinned = std::mem::replace(&mut self.pinned, true);
-        let Some(path) = self.path(&arguments[0]) else {
+        let effects = arguments.iter().any(|argument| has_effects(argument, self.shader));
+        let target = self.settled(&arguments[0], effects);
+        let Some(path) = self.path(&target) else {
             self.refuse(expr.at, "an atomic function takes a variable in memory");
             return Value::primary("0", true);
         };
         let refs: Vec<&Expr> = arguments[1..].iter().collect();
         let values = self.operands(&refs);
-        self.pinned = pinned;
         if *path.mem != super::memory::Mem::Atomic {
             self.refuse(arguments[0].at, "this member is not atomic in WGSL");
         }

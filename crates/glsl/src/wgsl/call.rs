@@ -1,8 +1,8 @@
 //! Calls of the author's functions, and constructors.
 
 use super::Writer;
-use super::path::{indexed, letter_name};
-use super::value::{Strength, Value};
+use super::path::{has_effects, indexed, letter_name};
+use super::value::{Value, list_text};
 use crate::lexer::At;
 use crate::tree::{Dir, Expr, ExprKind, Place};
 use crate::types::{OpaqueKind, Scalar, Type};
@@ -11,38 +11,30 @@ impl Writer<'_> {
     pub(super) fn user_call(&mut self, function: u32, arguments: &[Expr], expr: &Expr) -> Value {
         let shader = self.shader;
         let callee = &shader.functions[function as usize];
-        let inputs: Vec<&Expr> = arguments
-            .iter()
-            .zip(&callee.params)
-            .filter(|(argument, param)| {
-                matches!(self.place(**param), Place::Param(Dir::In)) && !argument.ty.is_opaque()
-            })
-            .map(|(argument, _)| argument)
-            .collect();
-        let copies =
-            callee.params.iter().any(|param| !matches!(self.place(*param), Place::Param(Dir::In)));
-        let pinned = self.pinned;
-        self.pinned |= copies;
-        let mut values = self.operands(&inputs).into_iter();
-        let mut texts: Vec<String> = Vec::new();
         let mut back = Vec::new();
-        for (argument, param) in arguments.iter().zip(&callee.params) {
-            if argument.ty.is_opaque() {
-                texts.push(self.opaque_argument(argument));
-                continue;
-            }
-            match self.place(*param) {
-                Place::Param(Dir::In) => {
-                    texts.push(values.next().map_or(String::new(), |value| value.text));
+        let mut parts = Vec::with_capacity(arguments.len());
+        for (at, (argument, param)) in arguments.iter().zip(&callee.params).enumerate() {
+            let part = self.capture(|writer| match writer.place(*param) {
+                _ if argument.ty.is_opaque() => {
+                    Value::primary(writer.opaque_argument(argument), true)
                 }
-                Place::Param(dir) => {
-                    texts.push(self.pointer(argument, dir, arguments, &mut back));
+                Place::Param(dir @ (Dir::Out | Dir::InOut)) => {
+                    let others = arguments[..at].iter().chain(&arguments[at + 1..]);
+                    let others =
+                        others.zip(callee.params[..at].iter().chain(&callee.params[at + 1..]));
+                    let direct = writer.direct_pointer(argument, others);
+                    let text = direct.unwrap_or_else(|| writer.copy(argument, dir, &mut back));
+                    Value::primary(text, true)
                 }
-                _ => {}
-            }
+                _ => writer.value(argument),
+            });
+            parts.push(part);
         }
-        self.pinned = pinned;
-        let call = format!("{}({})", self.function_names[function as usize], texts.join(", "));
+        let is_last = |argument: &Expr| has_effects(argument, shader);
+        let last = arguments.iter().rposition(is_last);
+        let values = self.in_order(parts, last, |at| arguments[at].at);
+        let name = &self.function_names[function as usize];
+        let call = format!("{name}({})", list_text(&values));
         self.copy_back(call, back, expr)
     }
 
@@ -96,64 +88,47 @@ impl Writer<'_> {
         }
     }
 
-    /// A pointer for a parameter that is written: to the variable itself if it is a plain one of
-    /// the function that nothing else in the call is, else to a copy.
-    fn pointer(
-        &mut self,
+    /// A pointer to a variable of the function, unless another argument of the call writes it.
+    fn direct_pointer<'e>(
+        &self,
         argument: &Expr,
-        dir: Dir,
-        arguments: &[Expr],
-        back: &mut Vec<(Expr, String)>,
-    ) -> String {
-        if let ExprKind::Var(index) = argument.kind
-            && self.is_function_variable(index)
-            && arguments.iter().filter(|other| names_var(other, index)).count() == 1
-        {
-            let name = self.var_name(index);
-            return match self.place(index) {
-                Place::Param(Dir::Out | Dir::InOut) => name,
-                _ => format!("&{name}"),
-            };
+        mut others: impl Iterator<Item = (&'e Expr, &'e u32)>,
+    ) -> Option<String> {
+        let ExprKind::Var(index) = argument.kind else { return None };
+        let writes = |(other, param): (&Expr, &u32)| {
+            let may = !matches!(self.place(*param), Place::Param(Dir::In))
+                || has_effects(other, self.shader);
+            may && other.names(&|found| found == index)
+        };
+        if !self.is_function_variable(index) || others.any(writes) {
+            return None;
         }
-        // The indices of the place are evaluated once.
-        let pinned = std::mem::replace(&mut self.pinned, true);
-        let fixed = self.fixed(argument);
-        self.pinned = pinned;
+        let name = self.var_name(index);
+        Some(match self.place(index) {
+            Place::Param(Dir::Out | Dir::InOut) => name,
+            _ => format!("&{name}"),
+        })
+    }
+
+    /// A pointer to a copy, which is written back to its place after the call.
+    fn copy(&mut self, argument: &Expr, dir: Dir, back: &mut Vec<(Expr, String)>) -> String {
+        let place = self.with_kept_indices(argument);
         let name = self.temporary();
         if dir == Dir::InOut {
-            let value = self.value(&fixed);
+            let value = self.value(&place);
             self.line(argument.at, format!("var {name} = {};", value.text));
         } else {
             let ty = self.type_text(&argument.ty);
             self.line(argument.at, format!("var {name}: {ty};"));
         }
-        back.push((fixed, name.clone()));
+        back.push((place, name.clone()));
         format!("&{name}")
-    }
-
-    /// The same place with indices that do not change any more.
-    pub(super) fn fixed(&mut self, expr: &Expr) -> Expr {
-        let mut fixed = expr.clone();
-        match &mut fixed.kind {
-            ExprKind::Index(base, index) => {
-                **base = self.fixed(base);
-                if index.known.is_none() {
-                    let value = self.value(index);
-                    let name = self.temporary();
-                    self.line(index.at, format!("let {name} = {};", value.text));
-                    index.kind = ExprKind::Kept(name);
-                }
-            }
-            ExprKind::Member(base, _) | ExprKind::Swizzle(base, _) => **base = self.fixed(base),
-            _ => {}
-        }
-        fixed
     }
 
     fn is_function_variable(&self, index: u32) -> bool {
         match self.place(index) {
             Place::Local | Place::Param(Dir::Out | Dir::InOut) => true,
-            Place::Param(Dir::In) => self.copied.contains(&index),
+            Place::Param(Dir::In) => self.copied.contains_key(&index),
             Place::Output | Place::Builtin(_) => self.entry.is_local(index),
             _ => false,
         }
@@ -166,10 +141,9 @@ impl Writer<'_> {
             Type::Opaque(_) => Value::primary("", true),
             Type::Array(..) | Type::Struct(_) => {
                 let values = self.operands(&refs);
-                let texts: Vec<&str> = values.iter().map(|value| value.text.as_str()).collect();
                 let stable = values.iter().all(|value| value.stable);
                 let name = self.type_text(ty);
-                Value::primary(format!("{name}({})", texts.join(", ")), stable)
+                Value::primary(format!("{name}({})", list_text(&values)), stable)
             }
             Type::Matrix(..) => self.construct_matrix(ty, &refs, at),
             _ => self.construct_vector(ty, &refs, at),
@@ -182,13 +156,13 @@ impl Writer<'_> {
         let stable = values.iter().all(|value| value.stable);
         let name = self.type_text(ty);
         let mut left = u32::from(size);
-        let mut texts = Vec::new();
+        let mut fitting = Vec::new();
         for (part, value) in parts.iter().zip(&values) {
             if left == 0 {
                 break;
             }
             let count = part.ty.components();
-            let text = if let Type::Matrix(_, _, rows) = part.ty {
+            let value = if let Type::Matrix(_, _, rows) = part.ty {
                 let kept = self.kept(at, value);
                 let names: Vec<String> = (0..count.min(left))
                     .map(|index| {
@@ -196,29 +170,23 @@ impl Writer<'_> {
                         format!("{kept}[{column}][{row}]")
                     })
                     .collect();
-                names.join(", ")
+                Value::primary(names.join(", "), true)
             } else {
                 self.fitting_part(part, value, scalar, count.min(left))
             };
-            texts.push(text);
+            fitting.push(value);
             left = left.saturating_sub(count);
         }
-        let mut same_type = false;
-        if let ([part], [text]) = (parts, texts.as_slice()) {
-            let rest = &part.ty == ty;
-            same_type = rest && !text.is_empty();
-            if ty.components() == 1 && part.ty.scalar() == Some(scalar) {
-                return Value { text: text.clone(), strength: Strength::Or, stable }.wrapped();
-            }
+        if let ([part], [value]) = (parts, fitting.as_slice())
+            && (&part.ty == ty || (ty.components() == 1 && part.ty.scalar() == Some(scalar)))
+        {
+            return value.clone();
         }
-        if same_type {
-            return Value::primary(format!("({})", texts.join(", ")), stable);
-        }
-        Value::primary(format!("{name}({})", texts.join(", ")), stable)
+        Value::primary(format!("{name}({})", list_text(&fitting)), stable)
     }
 
     /// The first numbers of a part, of the kind that is asked for.
-    fn fitting_part(&mut self, part: &Expr, value: &Value, scalar: Scalar, count: u32) -> String {
+    fn fitting_part(&mut self, part: &Expr, value: &Value, scalar: Scalar, count: u32) -> Value {
         let size = part.ty.components();
         let mut value = value.clone();
         if count < size {
@@ -226,14 +194,14 @@ impl Writer<'_> {
             value = super::path::swizzled(&value, size as u8, &letters);
         }
         if part.ty.scalar() == Some(scalar) {
-            return value.text;
+            return value;
         }
         let literal = matches!(part.kind, ExprKind::Literal(..));
         if literal && let Some([number]) = part.known.as_deref() {
-            return self.number(number.to(scalar)).text;
+            return self.number(number.to(scalar));
         }
         let name = self.type_text(&Type::vector(scalar, count as u8));
-        format!("{name}({})", value.text)
+        Value::primary(format!("{name}({})", value.text), value.stable)
     }
 
     /// A texture with its sampler, or one of them.
@@ -244,27 +212,5 @@ impl Writer<'_> {
             (OpaqueKind::Combined, Some(sampler)) => format!("{}, {sampler}", names.texture),
             _ => names.texture,
         }
-    }
-}
-
-impl Value {
-    /// In brackets unless it binds strongly.
-    fn wrapped(self) -> Self {
-        let plain =
-            self.text.chars().all(|letter| letter.is_ascii_alphanumeric() || "_.".contains(letter));
-        if plain {
-            return Self::primary(self.text, self.stable);
-        }
-        Self::primary(format!("({})", self.text), self.stable)
-    }
-}
-
-/// Whether an expression names a variable anywhere.
-fn names_var(expr: &Expr, index: u32) -> bool {
-    match &expr.kind {
-        ExprKind::Var(found) => *found == index,
-        ExprKind::Member(base, _) | ExprKind::Swizzle(base, _) => names_var(base, index),
-        ExprKind::Index(base, at) => names_var(base, index) || names_var(at, index),
-        _ => false,
     }
 }

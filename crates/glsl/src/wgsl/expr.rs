@@ -4,7 +4,7 @@ use super::Writer;
 use super::constant::is_risky;
 use super::output::Lines;
 use super::path::{has_effects, letter_name, swizzled};
-use super::value::{Strength, Value};
+use super::value::{Strength, Value, list_text};
 use crate::lexer::At;
 use crate::tree::{Expr, ExprKind, Op, Place};
 use crate::types::{Scalar, Type};
@@ -27,8 +27,9 @@ impl Writer<'_> {
             ExprKind::Logic(is_and, left, right) => self.logic(*is_and, left, right),
             ExprKind::Ternary(condition, yes, no) => self.ternary(condition, yes, no, &expr.ty),
             ExprKind::Assign(op, left, right) => {
-                self.assign(*op, left, right, expr.at);
-                self.value(left)
+                let left = self.with_kept_indices(left);
+                self.assign(*op, &left, right, expr.at);
+                self.value(&left)
             }
             ExprKind::Step(adds, new, operand) => self.step(*adds, *new, operand, true),
             ExprKind::Comma(left, right) => {
@@ -134,13 +135,24 @@ impl Writer<'_> {
         let parts: Vec<(Value, Lines)> =
             exprs.iter().map(|expr| self.capture(|writer| writer.value(expr))).collect();
         let last = parts.iter().rposition(|(_, lines)| !lines.is_empty());
+        self.in_order(parts, last, |index| exprs[index].at)
+    }
+
+    /// Values with the statements that each needs before it: values before the last one that needs
+    /// any are kept in temporaries.
+    pub(super) fn in_order(
+        &mut self,
+        parts: Vec<(Value, Lines)>,
+        last: Option<usize>,
+        at: impl Fn(usize) -> At,
+    ) -> Vec<Value> {
         let mut values = Vec::with_capacity(parts.len());
         for (index, (value, lines)) in parts.into_iter().enumerate() {
             self.lines.extend(lines);
             let early = last.is_some_and(|last| index < last) && !value.stable;
             if early {
                 let name = self.temporary();
-                self.line(exprs[index].at, format!("let {name} = {};", value.text));
+                self.line(at(index), format!("let {name} = {};", value.text));
                 values.push(Value::primary(name, true));
             } else {
                 values.push(value);
@@ -208,7 +220,8 @@ impl Writer<'_> {
             }
             Op::ShiftLeft | Op::ShiftRight => (Strength::Shift, (Strength::Unary, Strength::Unary)),
             Op::And | Op::Or | Op::Xor => (Strength::Bits, (Strength::Unary, Strength::Unary)),
-            _ => (Strength::Relation, (Strength::Shift, Strength::Shift)),
+            // `a < b >> c` would begin with a template.
+            _ => (Strength::Relation, (Strength::Sum, Strength::Sum)),
         };
         let text =
             format!("{} {} {}", left.at_least(needed.0), op.text(), right.at_least(needed.1));
@@ -279,9 +292,8 @@ impl Writer<'_> {
             && is_cheap(no, 6);
         if selectable {
             let stable = chosen.stable && yes_value.stable && no_value.stable;
-            let (yes_text, no_text) = (self.typed(yes, &yes_value), self.typed(no, &no_value));
-            let text = format!("select({no_text}, {yes_text}, {})", chosen.text);
-            return Value::primary(text, stable);
+            let list = [self.typed(no, no_value), self.typed(yes, yes_value), chosen];
+            return Value::primary(format!("select({})", list_text(&list)), stable);
         }
         let name = self.temporary();
         let ty = self.type_text(ty);
@@ -300,15 +312,15 @@ impl Writer<'_> {
     }
 
     /// A literal with its suffix, where nothing else says its type.
-    fn typed(&mut self, expr: &Expr, value: &Value) -> String {
+    fn typed(&mut self, expr: &Expr, value: Value) -> Value {
         match &expr.kind {
             ExprKind::Literal(..) | ExprKind::Convert(_) if expr.known.is_some() => {
                 let suffixed = std::mem::replace(&mut self.suffixed, true);
                 let value = self.value(expr);
                 self.suffixed = suffixed;
-                value.text
+                value
             }
-            _ => value.text.clone(),
+            _ => value,
         }
     }
 
@@ -358,19 +370,15 @@ impl Writer<'_> {
                 self.line(expr.at, "}");
             }
             _ if !has_effects(expr, self.shader) => {}
-            ExprKind::Call(..) => {
-                let value = self.value(expr);
-                if value.text.ends_with(')') {
-                    self.line(expr.at, format!("{};", value.text));
-                }
-            }
             _ => {
                 let value = self.value(expr);
-                if !value.text.is_empty() && expr.ty == Type::Void {
-                    self.line(expr.at, format!("{};", value.text));
-                } else if value.text.ends_with(')') && !value.stable {
-                    self.line(expr.at, format!("_ = {};", value.text));
+                // What is stable was evaluated by statements before.
+                if value.stable || value.text.is_empty() {
+                    return;
                 }
+                let is_call = matches!(expr.kind, ExprKind::Call(..)) || expr.ty == Type::Void;
+                let start = if is_call { "" } else { "_ = " };
+                self.line(expr.at, format!("{start}{};", value.text));
             }
         }
     }

@@ -7,7 +7,7 @@ use super::output::Lines;
 use super::stmt::falls_through;
 use super::value::{Strength, Value};
 use crate::lexer::At;
-use crate::tree::{Case, Expr, ExprKind, Loop, Number, Shader, Stmt, StmtKind, Var};
+use crate::tree::{Case, Expr, ExprKind, Loop, Number, Shader, Stmt, StmtKind};
 
 impl Writer<'_> {
     pub(super) fn loop_statement(&mut self, content: &Loop, at: At) {
@@ -289,18 +289,18 @@ pub(super) fn each_expr<'e>(list: &'e [Stmt], shader: &'e Shader, visit: &mut dy
         match &statement.kind {
             StmtKind::Declare(index) => {
                 if let Some(init) = &shader.vars[*index as usize].init {
-                    each_part(init, visit);
+                    init.each_part(visit);
                 }
             }
-            StmtKind::Expr(expr) | StmtKind::Return(Some(expr)) => each_part(expr, visit),
+            StmtKind::Expr(expr) | StmtKind::Return(Some(expr)) => expr.each_part(visit),
             StmtKind::Block(list) => each_expr(list, shader, visit),
             StmtKind::If(condition, yes, no) => {
-                each_part(condition, visit);
+                condition.each_part(visit);
                 each_expr(yes, shader, visit);
                 each_expr(no, shader, visit);
             }
             StmtKind::Switch(selector, cases) => {
-                each_part(selector, visit);
+                selector.each_part(visit);
                 cases.iter().for_each(|case| each_expr(&case.body, shader, visit));
             }
             StmtKind::Loop(content) => {
@@ -308,47 +308,10 @@ pub(super) fn each_expr<'e>(list: &'e [Stmt], shader: &'e Shader, visit: &mut dy
                 let declared =
                     content.declared.and_then(|at| shader.vars[at as usize].init.as_ref());
                 let parts = [declared, content.condition.as_ref(), content.step.as_ref()];
-                parts.into_iter().flatten().for_each(|part| each_part(part, visit));
+                parts.into_iter().flatten().for_each(|part| part.each_part(visit));
                 each_expr(&content.body, shader, visit);
             }
             StmtKind::Return(None) | StmtKind::Break | StmtKind::Continue | StmtKind::Discard => {}
         }
     }
-}
-
-fn each_part<'e>(expr: &'e Expr, visit: &mut dyn FnMut(&'e Expr)) {
-    visit(expr);
-    match &expr.kind {
-        ExprKind::Literal(..) | ExprKind::Var(_) | ExprKind::Kept(_) => {}
-        ExprKind::Unary(_, a)
-        | ExprKind::Step(_, _, a)
-        | ExprKind::Convert(a)
-        | ExprKind::Swizzle(a, _)
-        | ExprKind::Member(a, _)
-        | ExprKind::Length(a) => each_part(a, visit),
-        ExprKind::Binary(_, a, b)
-        | ExprKind::Logic(_, a, b)
-        | ExprKind::Assign(_, a, b)
-        | ExprKind::Comma(a, b)
-        | ExprKind::Index(a, b) => {
-            each_part(a, visit);
-            each_part(b, visit);
-        }
-        ExprKind::Ternary(a, b, c) => [a, b, c].into_iter().for_each(|part| each_part(part, visit)),
-        ExprKind::Call(_, parts)
-        | ExprKind::Builtin(_, parts)
-        | ExprKind::Texture(_, parts)
-        | ExprKind::Construct(parts) => parts.iter().for_each(|part| each_part(part, visit)),
-    }
-}
-
-/// Whether an expression names a variable for which something holds.
-pub(super) fn names_place(expr: &Expr, shader: &Shader, holds: &dyn Fn(&Var) -> bool) -> bool {
-    let mut found = false;
-    each_part(expr, &mut |part| {
-        if let ExprKind::Var(index) = part.kind {
-            found |= holds(&shader.vars[index as usize]);
-        }
-    });
-    found
 }

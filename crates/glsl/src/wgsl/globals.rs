@@ -93,8 +93,8 @@ impl Writer<'_> {
         let mut seen = BTreeSet::new();
         for (index, var) in shader.vars.iter().enumerate() {
             let key = (var.layout.set.unwrap_or(0), var.layout.binding.unwrap_or(0));
-            let fixed = var.layout.binding.is_some() && seen.insert(key);
-            if fixed { &mut first } else { &mut later }.push(index as u32);
+            let explicit = var.layout.binding.is_some() && seen.insert(key);
+            if explicit { &mut first } else { &mut later }.push(index as u32);
         }
         for index in first {
             self.plan_global(index, &uses, &mut bindings);
@@ -637,7 +637,7 @@ impl Writer<'_> {
 
     fn depends_on_override(&self, init: &Expr) -> bool {
         let scalar = matches!(init.ty, Type::Scalar(_));
-        scalar && super::flow::names_place(init, self.shader, &|var| var.place == Place::Override)
+        scalar && init.names(&|index| self.place(index) == Place::Override)
     }
 
     /// Whether WGSL takes an expression as a constant of the module.

@@ -100,6 +100,8 @@ pub(crate) struct Writer<'s> {
     globals: FxHashSet<String>,
     var_names: FxHashMap<u32, String>,
     struct_names: Vec<String>,
+    /// Names of members, by structure.
+    member_names: Vec<Vec<String>>,
     function_names: Vec<String>,
     /// Names that are visible in the function that is written, by scope.
     scopes: Vec<FxHashSet<String>>,
@@ -124,14 +126,12 @@ pub(crate) struct Writer<'s> {
     atomics: BTreeSet<(u32, Option<u32>)>,
     /// The function that is written.
     function: Option<u32>,
-    /// Parameters that are copied into a variable.
-    copied: FxHashSet<u32>,
+    /// Parameters that are copied into a variable, with their names in the head.
+    copied: FxHashMap<u32, String>,
     /// Variables that must be declared as `var` before a `switch` and only assigned in it.
     hoisted: FxHashSet<u32>,
     /// Whether every literal gets a suffix.
     suffixed: bool,
-    /// Whether indices are kept in temporaries since something around has effects.
-    pinned: bool,
     /// Whether derivatives are taken anywhere.
     derivatives: bool,
     clip_distances: bool,
@@ -157,6 +157,7 @@ impl<'s> Writer<'s> {
             globals: FxHashSet::default(),
             var_names: FxHashMap::default(),
             struct_names: Vec::new(),
+            member_names: Vec::new(),
             function_names: Vec::new(),
             scopes: Vec::new(),
             taken: FxHashSet::default(),
@@ -171,10 +172,9 @@ impl<'s> Writer<'s> {
             entry: entry::Plan::default(),
             atomics: BTreeSet::new(),
             function: None,
-            copied: FxHashSet::default(),
+            copied: FxHashMap::default(),
             hoisted: FxHashSet::default(),
             suffixed: false,
-            pinned: false,
             derivatives: false,
             clip_distances: false,
         }

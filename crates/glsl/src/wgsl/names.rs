@@ -1,7 +1,7 @@
 //! Names: WGSL has one scope for functions, types and variables, and no overloads.
 
 use super::Writer;
-use crate::tree::Place;
+use crate::tree::{Place, Struct};
 use crate::types::{Dim, Opaque, OpaqueKind, Scalar, Type};
 
 /// Keywords, reserved words, types and functions of WGSL: a name of the text that is one of them is
@@ -137,6 +137,7 @@ impl Writer<'_> {
             let name = if content.name.is_empty() { "Unnamed" } else { &content.name };
             let name = self.global_name(name);
             self.struct_names.push(name);
+            self.member_names.push(member_names(content));
         }
         for index in 0..shader.functions.len() {
             let name = self.function_name(index);
@@ -175,7 +176,7 @@ impl Writer<'_> {
         found
     }
 
-    /// Overloads are told apart by the types of their parameters.
+    /// Overloads are distinguished by the types of their parameters.
     fn function_name(&mut self, index: usize) -> String {
         let shader = self.shader;
         let function = &shader.functions[index];
@@ -230,7 +231,7 @@ impl Writer<'_> {
 
     /// The name of a member of a structure.
     pub(super) fn member_name(&self, index: u32, member: u32) -> String {
-        plain_name(&self.shader.structs[index as usize].members[member as usize].name)
+        self.member_names[index as usize][member as usize].clone()
     }
 
     pub(super) fn scoped<T>(&mut self, run: impl FnOnce(&mut Self) -> T) -> T {
@@ -239,6 +240,19 @@ impl Writer<'_> {
         self.scopes.pop();
         result
     }
+}
+
+/// The names of members: one that WGSL reserves gets another name than all the others.
+fn member_names(content: &Struct) -> Vec<String> {
+    let mut taken: Vec<String> = content.members.iter().map(|field| field.name.clone()).collect();
+    for at in 0..taken.len() {
+        let mut found = plain_name(&taken[at]);
+        while taken.iter().enumerate().any(|(other, name)| other != at && *name == found) {
+            found.push('_');
+        }
+        taken[at] = found;
+    }
+    taken
 }
 
 /// `UBO` as the name of a variable: `ubo`; `CameraData`: `cameraData`.

@@ -1,5 +1,6 @@
 //! Paths: variables with members and indices, which are read and written.
 
+use std::borrow::Cow;
 use std::rc::Rc;
 
 use super::Writer;
@@ -7,7 +8,7 @@ use super::memory::Mem;
 use super::output::Line;
 use super::value::Value;
 use crate::lexer::At;
-use crate::tree::{Dir, Expr, ExprKind, Op, Place};
+use crate::tree::{Dir, Expr, ExprKind, Op, Place, Shader};
 use crate::types::{Scalar, Type};
 
 /// A place that is read or written.
@@ -87,20 +88,14 @@ impl Writer<'_> {
         Some(Path { text, ty: expr.ty.clone(), mem, column: None })
     }
 
-    /// An index, as a number or a value that does not change before it is used.
+    /// An index, as a number where it is known.
     fn index_text(&mut self, index: &Expr) -> String {
         if let Some([number]) = index.known.as_deref()
             && let Some(number) = number.as_size()
         {
             return number.to_string();
         }
-        let value = self.value(index);
-        if self.pinned && !value.stable {
-            let name = self.temporary();
-            self.line(index.at, format!("let {name} = {};", value.text));
-            return name;
-        }
-        value.text
+        self.value(index).text
     }
 
     /// What is at a path.
@@ -125,8 +120,8 @@ impl Writer<'_> {
 
     /// An assignment, with the value of the left side before it if that is asked for.
     pub(super) fn assign(&mut self, op: Option<Op>, left: &Expr, right: &Expr, at: At) {
-        let pinned = self.pinned;
-        self.pinned |= has_effects(left, self.shader) || has_effects(right, self.shader);
+        let effects = has_effects(left, self.shader) || has_effects(right, self.shader);
+        let left = &*self.settled(left, effects);
         if let ExprKind::Swizzle(base, letters) = &left.kind {
             self.assign_swizzle(op, (base, letters), left, right, at);
         } else if let Some(path) = self.path(left) {
@@ -134,7 +129,6 @@ impl Writer<'_> {
         } else {
             self.refuse(left.at, "this place is not written in WGSL");
         }
-        self.pinned = pinned;
     }
 
     fn assign_path(&mut self, op: Option<Op>, path: &Path, pair: (&Expr, &Expr), at: At) {
@@ -247,7 +241,7 @@ impl Writer<'_> {
             crate::check::int_literal(1, at),
             &Type::Scalar(operand.ty.scalar().unwrap_or(Scalar::Int)),
         );
-        let pinned = std::mem::replace(&mut self.pinned, true);
+        let operand = &*self.settled(operand, keep || has_effects(operand, self.shader));
         let old = if keep && !new {
             let value = self.value(operand);
             let name = self.temporary();
@@ -265,13 +259,35 @@ impl Writer<'_> {
             }
             _ => self.assign(Some(op), operand, &one, at),
         }
-        let value = match old {
+        match old {
             Some(name) => Value::primary(name, true),
             None if keep => self.value(operand),
             None => Value::primary("", true),
-        };
-        self.pinned = pinned;
-        value
+        }
+    }
+
+    /// A place whose indices are evaluated now, if what comes between may change them.
+    pub(super) fn settled<'e>(&mut self, place: &'e Expr, needed: bool) -> Cow<'e, Expr> {
+        if needed { Cow::Owned(self.with_kept_indices(place)) } else { Cow::Borrowed(place) }
+    }
+
+    /// The same place with indices that do not change any more.
+    pub(super) fn with_kept_indices(&mut self, place: &Expr) -> Expr {
+        let mut settled = place.clone();
+        match &mut settled.kind {
+            ExprKind::Index(base, index) => {
+                **base = self.with_kept_indices(base);
+                if index.known.is_none() {
+                    let value = self.value(index);
+                    index.kind = ExprKind::Kept(self.kept(index.at, &value));
+                }
+            }
+            ExprKind::Member(base, _) | ExprKind::Swizzle(base, _) => {
+                **base = self.with_kept_indices(base);
+            }
+            _ => {}
+        }
+        settled
     }
 }
 
@@ -346,35 +362,29 @@ fn innermost_swizzle<'e>(base: &'e Expr, letters: &[u8]) -> (&'e Expr, Vec<u8>) 
 }
 
 /// Whether evaluating an expression changes anything.
-pub(super) fn has_effects(expr: &Expr, shader: &crate::tree::Shader) -> bool {
-    let any = |list: &[Expr]| list.iter().any(|part| has_effects(part, shader));
+pub(super) fn has_effects(expr: &Expr, shader: &Shader) -> bool {
+    let mut found = false;
+    expr.each_part(&mut |part| found |= changes(part, shader));
+    found
+}
+
+/// Whether an expression by itself changes anything, whatever its parts do.
+fn changes(expr: &Expr, shader: &Shader) -> bool {
     match &expr.kind {
-        ExprKind::Literal(..) | ExprKind::Var(_) | ExprKind::Kept(_) => false,
         ExprKind::Assign(..) | ExprKind::Step(..) => true,
-        ExprKind::Call(function, arguments) => {
+        ExprKind::Call(function, _) => {
             let callee = &shader.functions[*function as usize];
-            let writes = callee.params.iter().any(|param| {
+            let is_written = |param: &u32| {
                 matches!(shader.vars[*param as usize].place, Place::Param(Dir::Out | Dir::InOut))
-            });
-            callee.effects || writes || any(arguments)
+            };
+            callee.effects || callee.params.iter().any(is_written)
         }
-        ExprKind::Builtin(name, arguments) => {
-            let writes = matches!(*name, "modf" | "frexp" | "uaddCarry" | "usubBorrow")
+        ExprKind::Builtin(name, _) => {
+            matches!(*name, "modf" | "frexp" | "uaddCarry" | "usubBorrow")
                 || name.starts_with("atomic")
-                || expr.ty == Type::Void;
-            writes || any(arguments)
+                || expr.ty == Type::Void
         }
-        ExprKind::Texture(_, arguments) => expr.ty == Type::Void || any(arguments),
-        ExprKind::Construct(parts) => any(parts),
-        ExprKind::Unary(_, a)
-        | ExprKind::Convert(a)
-        | ExprKind::Swizzle(a, _)
-        | ExprKind::Member(a, _)
-        | ExprKind::Length(a) => has_effects(a, shader),
-        ExprKind::Binary(_, a, b)
-        | ExprKind::Logic(_, a, b)
-        | ExprKind::Comma(a, b)
-        | ExprKind::Index(a, b) => has_effects(a, shader) || has_effects(b, shader),
-        ExprKind::Ternary(a, b, c) => [a, b, c].iter().any(|part| has_effects(part, shader)),
+        ExprKind::Texture(..) => expr.ty == Type::Void,
+        _ => false,
     }
 }

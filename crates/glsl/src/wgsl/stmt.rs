@@ -81,8 +81,9 @@ impl Writer<'_> {
             }
             _ if var.written || var.indexed => {
                 let name = self.local_name(&format!("{}_in", var.name));
-                self.copied.insert(index);
-                format!("{name}: {ty}")
+                let text = format!("{name}: {ty}");
+                self.copied.insert(index, name);
+                text
             }
             _ => {
                 let name = self.name_local(index);
@@ -120,25 +121,11 @@ impl Writer<'_> {
     fn copy_params(&mut self, index: u32) {
         let shader = self.shader;
         for param in &shader.functions[index as usize].params {
-            if self.copied.contains(param) {
-                let from = names::plain_name(&format!("{}_in", self.var(*param).name));
-                let from = self.known_name(&from);
+            if let Some(from) = self.copied.get(param).cloned() {
                 let name = self.name_local(*param);
                 self.line(self.var(*param).at, format!("var {name} = {from};"));
             }
         }
-    }
-
-    /// The name that was given last for a name of the text.
-    fn known_name(&self, plain: &str) -> String {
-        let mut found = plain.to_owned();
-        let mut number = 0;
-        let has = |name: &str| self.scopes.iter().any(|scope| scope.contains(name));
-        while !has(&found) && number < 1000 {
-            number += 1;
-            found = format!("{plain}_{number}");
-        }
-        found
     }
 
     /// Statements of a block, up to the first that nothing follows.

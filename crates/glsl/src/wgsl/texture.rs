@@ -167,12 +167,12 @@ impl Writer<'_> {
         let size = format!("textureDimensions({texture}{level})");
         let name = self.type_text(ty);
         if !opaque.arrayed {
-            return Value::primary(format!("{name}({size})"), true);
+            return Value::primary(format!("{name}({size})"), level.is_empty());
         }
         let flat = if opaque.dim == Dim::Cube { 2 } else { opaque.flat() };
         let inner = self.type_text(&Type::vector(Scalar::Int, flat));
         let layers = format!("i32(textureNumLayers({texture}))");
-        Value::primary(format!("{name}({inner}({size}), {layers})"), true)
+        Value::primary(format!("{name}({inner}({size}), {layers})"), level.is_empty())
     }
 
     /// The coordinate of a texel, with the layer of an array.

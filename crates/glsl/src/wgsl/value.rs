@@ -14,6 +14,22 @@ pub(super) enum Strength {
     Primary,
 }
 
+/// Texts as the arguments of a call. A `<` and a `>` of two arguments would be the brackets of a
+/// template, as in `f(a < b, c > d)`, so comparisons before a `>` are in brackets.
+pub(super) fn list_text(values: &[Value]) -> String {
+    let opens = |value: &Value| value.strength <= Strength::Relation && value.text.contains(" < ");
+    let last = values.iter().rposition(|value| value.text.contains('>')).unwrap_or(0);
+    let texts: Vec<String> = values
+        .iter()
+        .enumerate()
+        .map(|(at, value)| match at < last && opens(value) {
+            true => format!("({})", value.text),
+            false => value.text.clone(),
+        })
+        .collect();
+    texts.join(", ")
+}
+
 /// The text of an expression.
 #[derive(Debug, Clone)]
 pub(super) struct Value {
