@@ -24,6 +24,7 @@ pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("glsl_values::random", random_programs),
         Trial::test("glsl_values::cases", written_cases),
+        Trial::test("glsl_values::specified", specified_cases),
         Trial::test("glsl_values::functions", functions_of_the_language),
     ]
 }
@@ -60,6 +61,25 @@ fn written_cases() -> Result<(), Failed> {
     report(&wrong, cases::CASES.len())
 }
 
+/// Programs in whose order of evaluation glslang differs from the specification.
+fn specified_cases() -> Result<(), Failed> {
+    let device = Device::open()?;
+    let mut wrong = Vec::new();
+    for (name, body, words) in cases::SPECIFIED {
+        let text = cases::whole_text(body);
+        let found = translated(&text).and_then(|written| device.run_wgsl(&written));
+        match found {
+            Ok(found) if found.starts_with(words) => {}
+            Ok(found) => {
+                let found = &found[..words.len()];
+                wrong.push(format!("{name}: {found:?}, and should be {words:?}"));
+            }
+            Err(message) => wrong.push(format!("{name}: {message}")),
+        }
+    }
+    report(&wrong, cases::SPECIFIED.len())
+}
+
 /// Every function of the language over a few values.
 fn functions_of_the_language() -> Result<(), Failed> {
     let device = Device::open()?;
@@ -74,10 +94,10 @@ fn functions_of_the_language() -> Result<(), Failed> {
 }
 
 fn report(wrong: &[String], count: usize) -> Result<(), Failed> {
-    match wrong.first() {
-        None => Ok(()),
-        Some(first) => Err(format!("{} of {count} are wrong; {first}", wrong.len()).into()),
-    }
+    let Some(first) = wrong.first() else { return Ok(()) };
+    let heads: Vec<&str> = wrong.iter().filter_map(|message| message.lines().next()).collect();
+    let list = heads.join("\n");
+    Err(format!("{} of {count} are wrong:\n{list}\n\nthe first: {first}", wrong.len()).into())
 }
 
 /// Both ways of a program give the same words.
@@ -87,36 +107,40 @@ fn compare(device: &Device, text: &str) -> Result<(), String> {
 
 /// Both ways give the same words, or floats that differ by so much of their size.
 fn compare_within(device: &Device, text: &str, tolerance: f32) -> Result<(), String> {
-    let (written, _) =
-        translate(text, Stage::Compute, SourceId(0), Default::default()).map_err(|problems| {
-            let first = &problems[0];
-            let place = first.labels.first().map(|label| &text[label.span.range()]);
-            format!("refused: {} at `{}`", first.message, place.unwrap_or_default())
-        })?;
+    let written = translated(text)?;
     let right = device.run_original(text)?;
-    let found =
-        device.run_wgsl(&written.text).map_err(|message| format!("{message}\n{}", written.text))?;
+    let found = device.run_wgsl(&written).map_err(|message| format!("{message}\n{written}"))?;
     let differs = |(a, b): (&u32, &u32)| !is_near(*a, *b, tolerance);
     match right.iter().zip(&found).position(differs) {
         None => Ok(()),
         Some(at) => Err(format!(
-            "word {at} is {:#x} ({}) and should be {:#x} ({})\n{}",
+            "word {at} is {:#x} ({}) and should be {:#x} ({})\n{written}",
             found[at],
             f32::from_bits(found[at]),
             right[at],
             f32::from_bits(right[at]),
-            written.text
         )),
     }
 }
 
+/// The translation of a compute shader.
+fn translated(text: &str) -> Result<String, String> {
+    let translated = translate(text, Stage::Compute, SourceId(0), Default::default());
+    let (written, _) = translated.map_err(|problems| {
+        let first = &problems[0];
+        let place = first.labels.first().map(|label| &text[label.span.range()]);
+        format!("refused: {} at `{}`", first.message, place.unwrap_or_default())
+    })?;
+    Ok(written.text)
+}
+
+/// Words are the same; with a tolerance, they are floats.
 fn is_near(a: u32, b: u32, tolerance: f32) -> bool {
-    if a == b {
-        return true;
+    if a == b || tolerance == 0.0 {
+        return a == b;
     }
     let (a, b) = (f32::from_bits(a), f32::from_bits(b));
-    if a.is_nan() && b.is_nan() || a == b {
-        return true;
-    }
-    tolerance > 0.0 && (a - b).abs() <= tolerance * a.abs().max(b.abs()).max(1e-3)
+    a.is_nan() && b.is_nan()
+        || a == b
+        || (a - b).abs() <= tolerance * a.abs().max(b.abs()).max(1e-3)
 }

@@ -127,6 +127,66 @@ pub const CASES: &[(&str, &str)] = &[
         "block copies",
         "void main() { float a[3] = block.list; put(a[2]); mat2 m = block.small; put(m[1][0]); mat3 r = block.rows; put(r[2][1]); put(block.rows[2][1]); vec3 c = block.rows * vec3(1.0, 2.0, 3.0); put(c.y); put(block.wide[1].z); put(int(block.flag)); }",
     ),
+    (
+        "values of steps",
+        "void main() { int x[3] = int[3](1, 2, 3); int i = 0; int y = ++x[i++]; put(y); put(i); put(x[0]); put(x[1]); int q = x[i++]++; put(q); put(i); put(x[1]); put(x[2]); float f[2] = float[2](0.5, 1.5); i = 0; float g = f[i++]--; put(g); put(i); put(f[0]); put(f[1]); }",
+    ),
+    (
+        "values of assignments",
+        "int n = 0; int next() { return n++; } void main() { int x[4] = int[4](0, 0, 0, 0); int i = 1; int z = (x[i++] = 5); put(z); put(i); put(x[1]); put(x[2]); int w = (x[next()] += 3); put(w); put(n); put(x[0]); vec3 v = vec3(1.0); v.zx = v.xz *= 2.0; put(v.x); put(v.z); float t = 1.0; t += (t = 3.0); put(t); int k = 0; k = k++ + k++; put(k); }",
+    ),
+    (
+        "steps within steps",
+        "void main() { int x[4] = int[4](0, 1, 2, 3); int y = x[x[x[x[x[1]++ & 3]++ & 3]++ & 3]++ & 3]++; put(y); for (int i = 0; i < 4; i++) put(x[i]); x[x[x[0]++ & 3]++ & 3]++; for (int i = 0; i < 4; i++) put(x[i]); }",
+    ),
+    (
+        "effects without a use",
+        "int n = 0; struct S { int x; }; int f() { n++; return n; } S s() { n += 10; return S(n); } bool touch() { n += 100; return n > 150; } void main() { f() == 1; s().x; (s().x, 3); for (int i = 0; i < 2; i++, f() + 1); put(n); touch() && touch(); put(n); vec2(f()).x; !touch(); -f(); touch() ? f() : f(); int a[2] = int[2](1, 2); a[f() & 1]; put(n); }",
+    ),
+    (
+        "names of parameters that are written",
+        "float pin(float x_in, float x) { x += 1.0; return x * 10.0 + x_in; } float pin_2(float x, float x_in) { x += 1.0; x_in += 2.0; return x * 10.0 + x_in; } void main() { put(pin(3.0, 4.0)); put(pin_2(3.0, 4.0)); }",
+    ),
+    (
+        "order of arguments",
+        "int g = 1; void fio(inout int a, int b) { a += b; } int two(int a, inout int b) { b += 1; return a; } void three(int a, out int b, inout int c) { b = a + c; c = b * 2; } void main() { int x[4] = int[4](10, 20, 30, 40); int i = 1; fio(x[i], i++); for (int k = 0; k < 4; k++) put(x[k]); put(i); int p = 2; int q = 5; three(p++, p, q); put(p); put(q); fio(q, q); put(q); three(q, q, p); put(q); put(p); i = 0; float whole[2] = float[2](0.0, 0.0); float part = modf(float(i) + 0.25, whole[i++]); put(part); put(i); put(whole[0]); }",
+    ),
+    (
+        "comparisons as arguments",
+        "bool f(bool a, bool b) { return a && !b; } void main() { float a = block.color.x; float b = 2.0; float c = block.after; float d = 4.0; int i = at; put(int(f(a < b, c > (d + 1.0) * 2.0))); bvec2 v = bvec2(a < b, c > (d + 1.0)); put(int(v.x)); put(int(v.y)); put(int(i < i + 5 >> 1)); put(int(a < b == c > d)); bool w[2] = bool[2](a < b, c >= (d)); put(int(w[0])); put(max(int(a < b), i >> (1))); }",
+    ),
+    (
+        "own function beside one of the language",
+        "float max(float a, int b) { return 42.0; } float clamp(float a) { return 1.5; } void main() { put(max(1, 2)); put(max(1.0, 2)); put(clamp(1)); put(max(1.0, 2.0)); put(max(1u, 2u)); }",
+    ),
+    (
+        "members whose names meet",
+        "struct S { float loop; float loop_; float fn_; float fn; }; void main() { S s = S(1.0, 2.0, 3.0, 4.0); s.loop_ += 10.0; put(s.loop); put(s.loop_); put(s.fn_); put(s.fn); }",
+    ),
+    (
+        "buffer without a layout",
+        "layout(binding = 2) readonly buffer Data { float a[5]; vec2 b[3]; mat2 c; int d; } data; void main() { for (int i = 0; i < 5; i++) put(data.a[i]); put(data.b[2].y); put(data.c[1].x); put(data.d); }",
+    ),
+    (
+        "barriers",
+        "shared int s[2]; void main() { s[0] = 3; memoryBarrierShared(); barrier(); s[1] = s[0] + 1; barrier(); memoryBarrier(); put(s[1]); }",
+    ),
+];
+
+/// Cases with the words that the specification gives, where glslang differs: it copies arguments
+/// that are variables after it evaluated all arguments, and GLSL 4.60, 6.1.1, copies each at its
+/// place in the order.
+pub const SPECIFIED: &[(&str, &str, &[u32])] = &[
+    (
+        "variables before effects",
+        "int g = 1; int two(int a, inout int b) { b += 1; return a; } void main() { int x[4] = int[4](10, 20, 30, 40); put(two(g, x[g++])); put(g); put(x[1]); int v = 7; int r[2] = int[2](0, 0); put(two(v, r[v = 1])); put(v); put(r[1]); }",
+        &[1, 2, 21, 7, 1, 1],
+    ),
+    (
+        "a place before effects",
+        "void fio(inout int a, int b) { a += b; } void main() { int q = 5; fio(q, q++); put(q); q = 5; fio(q, ++q); put(q); }",
+        &[10, 11],
+    ),
 ];
 
 /// The whole text of a case.
