@@ -5,11 +5,12 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::failure::{DiagnosticForm, Failure};
+use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::input::InputArguments;
 use super::terminal::write_data;
 use crate::bundle::{Language, Stage};
-use crate::diagnostic::{Diagnostics, Label};
+use crate::compose::Composed;
+use crate::diagnostic::{Diagnostics, Label, codes};
 use crate::glsl::tree::Stage as GlslStage;
 use crate::glsl::wgsl::{Clip, Fact, Facts, Options, Written};
 use crate::source::{SourceId, SourceSet};
@@ -68,10 +69,35 @@ pub fn run_translate(arguments: Arguments, form: DiagnosticForm) -> Result<(), F
     let text = &ready.composed.text;
     let translated = crate::glsl::translate(text, stage, COMPOSED, Options { clip });
     match translated {
-        Ok((written, _)) => Ok(write_data(with_notes(&written).as_bytes())?),
+        Ok((written, warnings)) => {
+            let warnings = in_authors_text(warnings, &ready.composed.map);
+            print_warnings(&ready.sources, &warnings, form);
+            check_written(&written.text)?;
+            Ok(write_data(with_notes(&written).as_bytes())?)
+        }
         Err(problems) => {
             let problems = in_authors_text(problems, &ready.composed.map);
             Err(Failure::Input(ready.sources, problems))
+        }
+    }
+}
+
+/// What is written is valid, or the translator is wrong. Features that only some targets have, such
+/// as clip distances, are WGSL.
+fn check_written(text: &str) -> Result<(), Failure> {
+    let composed = Composed::of_text(Language::Wesl, None, text.to_owned());
+    let Err(problems) = crate::validate::validate(&composed) else { return Ok(()) };
+    match problems.first() {
+        Some(problem) if problem.code == codes::NOT_PORTABLE => Ok(()),
+        Some(problem) if problem.code == codes::LIMIT_EXCEEDED => {
+            Err(Failure::input(format!("the shader has {}", problem.message)))
+        }
+        first => {
+            let message = first.map_or("", |problem| problem.message.as_str());
+            Err(Failure::input(format!(
+                "internal error: the WGSL that the translator wrote is not valid ({message}); \
+                 please report it with the shader"
+            )))
         }
     }
 }
@@ -120,7 +146,9 @@ fn notes_of(facts: &Facts) -> Vec<String> {
         Fact::Location(name, location) => {
             format!("`{name}` had no location, and has {location} here")
         }
-        Fact::Barrier(name) => format!("`{name}` reaches only the workgroup here"),
+        Fact::Binding(name, wanted, found) => {
+            format!("`{name}` had the binding {wanted}, and has {found} here")
+        }
     };
     facts.list.iter().map(note).collect()
 }
