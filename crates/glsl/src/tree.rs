@@ -37,10 +37,6 @@ pub type Known = Rc<[Number]>;
 pub struct Shader {
     /// The stage.
     pub stage: Stage,
-    /// The number after `#version`.
-    pub version: u32,
-    /// Whether it is OpenGL ES.
-    pub es: bool,
     /// All structures, those of blocks too.
     pub structs: Vec<Struct>,
     /// All variables, parameters and locals too.
@@ -53,8 +49,6 @@ pub struct Shader {
     pub local_size: [u32; 3],
     /// Ids of the constants that decide `local_size`.
     pub local_size_ids: [Option<u32>; 3],
-    /// Whether `early_fragment_tests` was asked for.
-    pub early_tests: bool,
     /// How the depth is bounded.
     pub depth_mode: Option<String>,
 }
@@ -130,6 +124,20 @@ pub struct Interpolation {
     pub sample: bool,
     /// `invariant`
     pub invariant: bool,
+}
+
+impl Interpolation {
+    /// What holds for a member of a block: its own words beside those of the block.
+    pub fn with(self, outer: Self) -> Self {
+        let Self { flat, linear, centroid, sample, invariant } = self;
+        Self {
+            flat: flat || outer.flat,
+            linear: linear || outer.linear,
+            centroid: centroid || outer.centroid,
+            sample: sample || outer.sample,
+            invariant: invariant || outer.invariant,
+        }
+    }
 }
 
 /// What is written in `layout(...)` before a variable or a block.
@@ -256,6 +264,10 @@ pub struct Function {
     pub calls: Vec<u32>,
     /// Whether it writes what its caller can see, other than its parameters.
     pub effects: bool,
+    /// Whether it has a `discard` of its own.
+    pub discards: bool,
+    /// Whether it has a loop.
+    pub loops: bool,
 }
 
 /// A statement.
@@ -416,26 +428,42 @@ pub enum ExprKind {
 
 /// An operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub enum Op {
+    /// `+`
     Add,
+    /// `-`
     Sub,
+    /// `*`
     Mul,
+    /// `/`
     Div,
+    /// `%`
     Mod,
+    /// `<<`
     ShiftLeft,
+    /// `>>`
     ShiftRight,
+    /// `&`
     And,
+    /// `|`
     Or,
+    /// `^`
     Xor,
+    /// `==`
     Equal,
+    /// `!=`
     NotEqual,
+    /// `<`
     Less,
+    /// `>`
     Greater,
+    /// `<=`
     LessEqual,
+    /// `>=`
     GreaterEqual,
     /// `^^`
     LogicXor,
+    /// `-` before its operand
     Negate,
     /// `!`
     Not,
@@ -490,11 +518,6 @@ impl Op {
             Self::Not => "!",
             Self::Invert => "~",
         }
-    }
-
-    /// Whether its operands are numbers of the same kind and its result too.
-    pub fn is_arithmetic(self) -> bool {
-        matches!(self, Self::Add | Self::Sub | Self::Mul | Self::Div | Self::Mod)
     }
 }
 

@@ -160,6 +160,11 @@ impl Type {
         }
     }
 
+    /// Whether it is made of integers.
+    pub fn is_integer(&self) -> bool {
+        matches!(self.innermost().scalar(), Some(Scalar::Int | Scalar::Uint))
+    }
+
     /// An array of it.
     pub fn array(self, size: Option<u32>) -> Self {
         Self::Array(Rc::new(self), size)

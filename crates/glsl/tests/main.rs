@@ -1,6 +1,7 @@
 //! Texts of GLSL: what becomes of them, and what is said about mistakes.
 
 mod damaged;
+mod interface;
 mod messages;
 
 use std::path::Path;
@@ -12,7 +13,7 @@ use lamplight_testing::{run_tests, snapshot};
 use libtest_mimic::{Failed, Trial};
 
 fn main() -> std::process::ExitCode {
-    run_tests(&[translated, messages::tests, damaged::tests])
+    run_tests(&[translated, messages::tests, interface::tests, damaged::tests])
 }
 
 /// The folder of texts whose translation is recorded.

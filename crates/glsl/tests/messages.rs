@@ -8,6 +8,7 @@ use libtest_mimic::{Failed, Trial};
 pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("glsl::messages", each_message),
+        Trial::test("glsl::refused", each_refusal),
         Trial::test("glsl::parser_goes_on", parser_goes_on),
     ]
 }
@@ -57,6 +58,93 @@ fn each_message() -> Result<(), Failed> {
         let at = problem.labels.first().map_or("", |label| &text[label.span.range()]);
         if problem.message != *message || at != *place {
             return Err(format!("{body}: `{at}`: {}", problem.message).into());
+        }
+    }
+    Ok(())
+}
+
+/// Whole texts of a stage that have no translation; the place, and the message.
+const REFUSED: &[(Stage, &str, &str, &str)] = &[
+    (
+        Stage::Compute,
+        "layout(constant_id = 1) const int N = 2; const int M = N * 2; int t[M]; void main() { }",
+        "M",
+        "an array whose size is a specialisation constant has no counterpart in WGSL",
+    ),
+    (
+        Stage::Compute,
+        "layout(local_size_x_id = 1) in; shared float t[gl_WorkGroupSize.x]; void main() { }",
+        "gl_WorkGroupSize.x",
+        "an array whose size is a specialisation constant has no counterpart in WGSL",
+    ),
+    (
+        Stage::Compute,
+        "layout(constant_id = 1) const int a = 2; layout(constant_id = 1) const int b = 2; \
+         void main() { }",
+        "b",
+        "a specialisation constant has the id 1 already",
+    ),
+    (
+        Stage::Compute,
+        "int a; void main() { memoryBarrierBuffer(); a = 1; barrier(); }",
+        "memoryBarrierBuffer()",
+        "`memoryBarrierBuffer` has a counterpart in WGSL only beside `barrier()`",
+    ),
+    (
+        Stage::Compute,
+        "coherent buffer B { int a; }; void main() { a = 1; }",
+        "coherent",
+        "`coherent` has no counterpart in WGSL",
+    ),
+    (
+        Stage::Compute,
+        "volatile buffer B { int a; }; void main() { a = 1; }",
+        "volatile",
+        "`volatile` has no counterpart in WGSL",
+    ),
+    (
+        Stage::Fragment,
+        "layout(early_fragment_tests) in; void main() { discard; }",
+        "layout(early_fragment_tests) in;",
+        "`early_fragment_tests` has no counterpart in WGSL beside `discard`, depths and writes to \
+         memory",
+    ),
+    (
+        Stage::Fragment,
+        "layout(early_fragment_tests) in; buffer B { int a; }; void main() { a = 1; }",
+        "layout(early_fragment_tests) in;",
+        "`early_fragment_tests` has no counterpart in WGSL beside `discard`, depths and writes to \
+         memory",
+    ),
+    (
+        Stage::Fragment,
+        "layout(pixel_center_integer) in vec4 gl_FragCoord; void main() { }",
+        "pixel_center_integer",
+        "`pixel_center_integer` is not known in a layout",
+    ),
+    (
+        Stage::Fragment,
+        "uniform mat2 a = inverse(mat2(2.0)); void main() { }",
+        "inverse(mat2(2.0))",
+        "the initial value of this uniform is not computed before the shader runs",
+    ),
+    (
+        Stage::Vertex,
+        "buffer B { int a; } b; void main() { b.a = 1; }",
+        "b",
+        "a vertex shader writes no buffer in WGSL",
+    ),
+];
+
+fn each_refusal() -> Result<(), Failed> {
+    for (stage, text, place, message) in REFUSED {
+        let text = format!("#version 450\n{text}\n");
+        let found = translate(&text, *stage, SourceId(0), Default::default());
+        let Err(problems) = found else { return Err(format!("accepted: {text}").into()) };
+        let problem = &problems[0];
+        let at = problem.labels.first().map_or("", |label| &text[label.span.range()]);
+        if problem.message != *message || at != *place {
+            return Err(format!("{text}: `{at}`: {}", problem.message).into());
         }
     }
     Ok(())

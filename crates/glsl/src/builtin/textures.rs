@@ -276,8 +276,3 @@ fn gather_forms(opaque: &Opaque, offset: bool) -> Vec<Form> {
     }
     vec![Form { params, optional, ret: Type::Vector(opaque.scalar, 4) }]
 }
-
-/// Whether a call takes derivatives.
-pub fn takes_derivatives(access: Access) -> bool {
-    matches!(access, Access::Sample { lod: Lod::Implicit, .. } | Access::QueryLod)
-}

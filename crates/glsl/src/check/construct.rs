@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::{Checker, Res, fold};
 use crate::ast::{self, ExprKind as Ast};
 use crate::lexer::At;
-use crate::tree::{Expr, ExprKind};
+use crate::tree::{Expr, ExprKind, Place};
 use crate::types::{OpaqueKind, Scalar, Type, named_type};
 
 impl<'a> Checker<'a> {
@@ -42,14 +42,28 @@ impl<'a> Checker<'a> {
 
     /// A size between brackets.
     pub(super) fn array_size(&mut self, expr: &'a ast::Expr<'a>) -> Res<u32> {
-        let before = std::mem::replace(&mut self.sizing, true);
-        let number = self.constant_int(expr, "the size of an array");
-        self.sizing = before;
-        match number?.as_size() {
+        let value = self.value(expr)?;
+        if self.is_specialised(&value) {
+            let message = "an array whose size is a specialisation constant has no counterpart \
+                           in WGSL";
+            return self.refuse(expr.at, message);
+        }
+        match self.constant_number(&value, "the size of an array")?.as_size() {
             Some(size) if size > 0 && size <= 1 << 24 => Ok(size),
             Some(0) | None => self.fail(expr.at, "the size of an array must be positive"),
             Some(_) => self.fail(expr.at, "the array is too large"),
         }
+    }
+
+    /// Whether a specialisation constant decides a value.
+    fn is_specialised(&self, value: &Expr) -> bool {
+        value.known.is_none()
+            && value.names(&|index| {
+                let var = self.var(index);
+                var.place == Place::Override
+                    || var.place == Place::Const
+                        && var.init.as_ref().is_some_and(|init| self.is_specialised(init))
+            })
     }
 
     /// A value of a type from others.

@@ -225,7 +225,7 @@ impl<'a> Checker<'a> {
             None => None,
         };
         let ty = init.as_ref().map_or(ty, |init| init.ty.clone());
-        if place == Place::Input && is_integer(&ty) && self.shader.stage == Stage::Fragment {
+        if place == Place::Input && ty.is_integer() && self.shader.stage == Stage::Fragment {
             let flat = quals.interpolation.flat;
             if !flat {
                 return self.fail(name.at, "an input of integers must be `flat`");
@@ -234,12 +234,13 @@ impl<'a> Checker<'a> {
         if matches!(place, Place::Const | Place::Override) && init.is_none() {
             return self.fail(name.at, format!("the constant `{}` has no value", name.text));
         }
-        let index = self.new_var(name.text, ty, place, name.at);
-        if let (Place::Override, Some(init)) = (place, &init)
-            && let Some(known) = &init.known
+        if let Some(id) = quals.layout.constant_id
+            && self.constant_with(id).is_some()
         {
-            self.defaults.insert(index, known.clone());
+            let message = format!("a specialisation constant has the id {id} already");
+            return self.fail(name.at, message);
         }
+        let index = self.new_var(name.text, ty, place, name.at);
         let var = self.var_mut(index);
         if place == Place::Const {
             var.known = init.as_ref().and_then(|init| init.known.clone());
@@ -350,13 +351,16 @@ impl<'a> Checker<'a> {
             return self.refuse(name.at, "`gl_PerVertex` with an instance name is not translated");
         }
         for member in &block.members {
+            let invariant = self.quals(&member.quals)?.interpolation.invariant;
             let base = self.spec_type(&member.ty, NO_SIZES)?;
             for declarator in &member.names {
                 let ty = self.after_name(base.clone(), &declarator.sizes)?;
-                if let (Some(index), Type::Array(_, Some(_))) =
-                    (self.builtin_index(declarator.name.text, declarator.name.at)?, &ty)
-                {
-                    self.var_mut(index).ty = ty;
+                let name = declarator.name;
+                let Some(index) = self.builtin_index(name.text, name.at)? else { continue };
+                let var = self.var_mut(index);
+                var.interpolation.invariant |= invariant;
+                if matches!(ty, Type::Array(_, Some(_))) {
+                    var.ty = ty;
                 }
             }
         }
@@ -379,7 +383,3 @@ const PARTS: u32 = 4096;
 
 /// No sizes.
 pub(super) const NO_SIZES: &ast::Sizes<'static> = &Vec::new();
-
-fn is_integer(ty: &Type) -> bool {
-    matches!(ty.innermost().scalar(), Some(Scalar::Int | Scalar::Uint))
-}

@@ -225,8 +225,8 @@ impl<'a> Checker<'a> {
 
     fn member_known(&self, base: &Expr, index: u32, member: u32) -> Option<Known> {
         let members = &self.shader.structs[index as usize].members;
-        let start: usize =
-            members[..member as usize].iter().map(|field| self.number_count(&field.ty)).sum();
+        let before = members[..member as usize].iter();
+        let start = before.map(|field| self.number_count(&field.ty)).fold(0, usize::saturating_add);
         fold::part(base.known.as_ref(), start, self.number_count(&members[member as usize].ty))
     }
 
@@ -238,7 +238,8 @@ impl<'a> Checker<'a> {
             }
             Type::Struct(index) => {
                 let members = &self.shader.structs[*index as usize].members;
-                members.iter().map(|field| self.number_count(&field.ty)).sum()
+                let counts = members.iter().map(|field| self.number_count(&field.ty));
+                counts.fold(0, usize::saturating_add)
             }
             other => other.components() as usize,
         }
@@ -289,7 +290,7 @@ impl<'a> Checker<'a> {
                     return self.fail(index.at, "the index is out of bounds");
                 }
                 let count = self.number_count(&ty);
-                let start = value.unwrap_or(0) as usize * count;
+                let start = (value.unwrap_or(0) as usize).saturating_mul(count);
                 known = fold::part(base.known.as_ref(), start, count);
                 if size.is_none() {
                     self.grow_array(&base, value.unwrap_or(0));
@@ -308,7 +309,7 @@ impl<'a> Checker<'a> {
         let is_open = matches!(self.var(var).ty, Type::Array(_, None));
         if is_open && !matches!(self.var(var).place, Place::StorageBlock) {
             let grown = self.grown.entry(var).or_default();
-            *grown = (*grown).max(index + 1);
+            *grown = (*grown).max(index.saturating_add(1));
         }
     }
 
@@ -355,9 +356,14 @@ impl<'a> Checker<'a> {
     /// An expression whose value must be known: a size, a label or a number of a layout.
     pub(super) fn constant_int(&mut self, expr: &'a ast::Expr<'a>, what: &str) -> Res<Number> {
         let value = self.value(expr)?;
+        self.constant_number(&value, what)
+    }
+
+    /// The number of such an expression.
+    pub(super) fn constant_number(&mut self, value: &Expr, what: &str) -> Res<Number> {
         match value.known.as_deref() {
             Some([number @ (Number::Int(_) | Number::Uint(_))]) => Ok(*number),
-            _ => self.fail(expr.at, format!("{what} must be a constant integer")),
+            _ => self.fail(value.at, format!("{what} must be a constant integer")),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::decl::NO_SIZES;
 use super::layout::Storage;
 use super::{Checker, Res, Symbol};
 use crate::ast;
-use crate::tree::{Dir, Function, Item, Place};
+use crate::tree::{Dir, Function, Item, Place, Stmt, StmtKind};
 use crate::types::Type;
 
 impl<'a> Checker<'a> {
@@ -34,12 +34,16 @@ impl<'a> Checker<'a> {
         self.function = Some(index);
         self.calls.clear();
         self.effects = false;
+        self.discards = false;
         let result = self.scoped(|checker| checker.function_body(function, &params, body));
         self.function = None;
         let found = &mut self.shader.functions[index as usize];
         found.calls = self.calls.iter().copied().collect();
         found.effects = self.effects;
-        found.body = Some(result?);
+        found.discards = self.discards;
+        let body = result?;
+        found.loops = has_loop(&body);
+        found.body = Some(body);
         Ok(())
     }
 
@@ -130,6 +134,8 @@ impl<'a> Checker<'a> {
             at: name.at,
             calls: Vec::new(),
             effects: false,
+            discards: false,
+            loops: false,
         });
         let mut list = known;
         list.push(index);
@@ -140,4 +146,14 @@ impl<'a> Checker<'a> {
     fn signature(&self, params: &[u32]) -> Vec<(Type, Place)> {
         params.iter().map(|param| (self.var(*param).ty.clone(), self.var(*param).place)).collect()
     }
+}
+
+fn has_loop(list: &[Stmt]) -> bool {
+    list.iter().any(|statement| match &statement.kind {
+        StmtKind::Loop(_) => true,
+        StmtKind::Block(list) => has_loop(list),
+        StmtKind::If(_, yes, no) => has_loop(yes) || has_loop(no),
+        StmtKind::Switch(_, cases) => cases.iter().any(|case| has_loop(&case.body)),
+        _ => false,
+    })
 }

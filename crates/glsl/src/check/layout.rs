@@ -86,7 +86,6 @@ const IGNORED: &[&str] = &[
     "packed",
     "column_major",
     "origin_upper_left",
-    "pixel_center_integer",
     "depth_any",
     "depth_unchanged",
     "buffer_reference_align",
@@ -148,8 +147,6 @@ impl<'a> Checker<'a> {
             "readonly" => quals.access.readonly = true,
             "writeonly" => quals.access.writeonly = true,
             "smooth" | "highp" | "mediump" | "lowp" | "precise" | "restrict" => {}
-            // What these promise holds for a single invocation without them.
-            "coherent" | "volatile" => {}
             _ => return self.refuse(at, format!("`{word}` has no counterpart in WGSL")),
         }
         Ok(())
@@ -238,7 +235,9 @@ impl<'a> Checker<'a> {
                 self.shader.local_size_ids[axis] = Some(id);
             }
         }
-        self.shader.early_tests |= quals.early_tests;
+        if quals.early_tests {
+            self.early_tests = Some(at);
+        }
         let index = match quals.storage {
             Some(Storage::Uniform) => 0,
             Some(Storage::Buffer) => 1,

@@ -24,9 +24,9 @@ use crate::builtin::variables::{CONSTANTS, find_builtin};
 use crate::lexer::At;
 use crate::parse::Parsed;
 use crate::tree::{
-    Access, Expr, ExprKind, Interpolation, Known, Layout, Number, Place, Shader, Stage, Var,
+    Access, Expr, ExprKind, Interpolation, Item, Layout, Number, Place, Shader, Stage, Var,
 };
-use crate::types::{INT, Type};
+use crate::types::{INT, OpaqueKind, Type, UINT};
 pub use version::Version;
 
 /// An error that was reported.
@@ -86,16 +86,15 @@ pub(crate) struct Checker<'a> {
     shapes: Vec<(u32, u32)>,
     /// Variables of the language that the text names.
     builtins: FxHashMap<&'a str, u32>,
-    /// Default values of specialisation constants, for sizes.
-    defaults: FxHashMap<u32, Known>,
     /// How large arrays without a size must be for the constant indices into them.
     grown: FxHashMap<u32, u32>,
-    /// Whether specialisation constants count with their default values.
-    sizing: bool,
     /// The function that is read, and what it calls.
     function: Option<u32>,
     calls: BTreeSet<u32>,
     effects: bool,
+    discards: bool,
+    /// Where `early_fragment_tests` is.
+    early_tests: Option<At>,
     /// How packing and matrices lie in blocks, as `layout(...) uniform;` sets it.
     packing: [Layout; 2],
     /// How many loops and switches are around.
@@ -109,15 +108,12 @@ impl<'a> Checker<'a> {
     fn new(stage: Stage, version: Version, source: SourceId) -> Self {
         let shader = Shader {
             stage,
-            version: version.number,
-            es: version.es,
             structs: Vec::new(),
             vars: Vec::new(),
             functions: Vec::new(),
             order: Vec::new(),
             local_size: [1; 3],
             local_size_ids: [None; 3],
-            early_tests: false,
             depth_mode: None,
         };
         Self {
@@ -127,12 +123,12 @@ impl<'a> Checker<'a> {
             scopes: vec![FxHashMap::default()],
             shapes: Vec::new(),
             builtins: FxHashMap::default(),
-            defaults: FxHashMap::default(),
             grown: FxHashMap::default(),
-            sizing: false,
             function: None,
             calls: BTreeSet::new(),
             effects: false,
+            discards: false,
+            early_tests: None,
             packing: [Layout::default(), Layout::default()],
             loops: 0,
             switches: 0,
@@ -279,12 +275,39 @@ impl<'a> Checker<'a> {
         Ok(Some(self.var_expr(index, at)))
     }
 
-    fn group_size(&self, at: At) -> Expr {
-        let numbers: Vec<Expr> =
-            self.shader.local_size.iter().map(|size| literal(Number::Uint(*size), at)).collect();
-        let known = self.shader.local_size.iter().map(|size| Number::Uint(*size)).collect();
+    fn group_size(&mut self, at: At) -> Expr {
+        let parts: Vec<Expr> = (0..3)
+            .map(|axis| match self.size_constant(axis) {
+                Some(index) => fold::converted(self.var_expr(index, at), &UINT),
+                None => literal(Number::Uint(self.shader.local_size[axis]), at),
+            })
+            .collect();
         let ty = Type::Vector(crate::types::Scalar::Uint, 3);
-        Expr { kind: ExprKind::Construct(numbers), ty, at, known: Some(known) }
+        let known = fold::constructed(&ty, &parts);
+        Expr { kind: ExprKind::Construct(parts), ty, at, known }
+    }
+
+    /// The specialisation constant that decides an axis of the workgroup. An id without a
+    /// declaration makes one, which begins with the size that is written.
+    fn size_constant(&mut self, axis: usize) -> Option<u32> {
+        let id = self.shader.local_size_ids[axis]?;
+        if let Some(index) = self.constant_with(id) {
+            return Some(index);
+        }
+        let name = ["local_size_x", "local_size_y", "local_size_z"][axis];
+        let init = literal(Number::Uint(self.shader.local_size[axis]), At::default());
+        let index = self.new_var(name, UINT, Place::Override, At::default());
+        let var = self.var_mut(index);
+        var.init = Some(init);
+        var.layout.constant_id = Some(id);
+        self.shader.order.push(Item::Var(index));
+        Some(index)
+    }
+
+    /// The specialisation constant with an id.
+    fn constant_with(&self, id: u32) -> Option<u32> {
+        let has_it = |var: &Var| var.layout.constant_id == Some(id);
+        self.shader.vars.iter().position(has_it).map(|index| index as u32)
     }
 
     /// The variable of the language with that name.
@@ -313,10 +336,7 @@ impl<'a> Checker<'a> {
             }
         }
         let var = self.var(index);
-        let mut known = var.known.clone();
-        if known.is_none() && self.sizing {
-            known = self.defaults.get(&index).cloned();
-        }
+        let known = var.known.clone();
         Expr { kind: ExprKind::Var(index), ty: var.ty.clone(), at, known }
     }
 
@@ -339,8 +359,12 @@ impl<'a> Checker<'a> {
             var.users.sort_unstable();
             var.users.dedup();
         });
+        for axis in 0..3 {
+            self.size_constant(axis);
+        }
         self.size_arrays();
         self.refuse_recursion();
+        self.refuse_early_tests();
         let unfinished: Vec<(At, String)> = self
             .shader
             .functions
@@ -381,27 +405,61 @@ impl<'a> Checker<'a> {
     /// Functions must not call themselves, not even through others.
     fn refuse_recursion(&mut self) {
         let functions = &self.shader.functions;
-        let mut reached: Vec<BTreeSet<u32>> =
-            functions.iter().map(|f| f.calls.iter().copied().collect()).collect();
-        for _ in 0..functions.len() {
-            let next: Vec<BTreeSet<u32>> = reached
-                .iter()
-                .map(|set| {
-                    let further = set.iter().flat_map(|call| reached[*call as usize].iter());
-                    set.iter().chain(further).copied().collect()
-                })
-                .collect();
-            if next == reached {
-                break;
+        // Functions that are entered, with how many of their calls were followed.
+        let mut entered: Vec<(usize, usize)> = Vec::new();
+        let mut states = vec![Visit::Unseen; functions.len()];
+        for root in 0..functions.len() {
+            if states[root] == Visit::Unseen {
+                states[root] = Visit::Entered;
+                entered.push((root, 0));
             }
-            reached = next;
-        }
-        let found = (0..functions.len()).find(|index| reached[*index].contains(&(*index as u32)));
-        if let Some(index) = found {
-            let (at, name) = (functions[index].at, functions[index].name.clone());
-            let _: Res<()> = self.fail(at, format!("`{name}` calls itself"));
+            while let Some((index, followed)) = entered.last_mut() {
+                let index = *index;
+                let Some(callee) = functions[index].calls.get(*followed) else {
+                    states[index] = Visit::Left;
+                    entered.pop();
+                    continue;
+                };
+                *followed += 1;
+                let callee = *callee as usize;
+                if states[callee] == Visit::Entered {
+                    let (at, name) = (functions[callee].at, functions[callee].name.clone());
+                    let _: Res<()> = self.fail(at, format!("`{name}` calls itself"));
+                    return;
+                }
+                if states[callee] == Visit::Unseen {
+                    states[callee] = Visit::Entered;
+                    entered.push((callee, 0));
+                }
+            }
         }
     }
+
+    /// WebGPU tests the depth early only where nothing can tell the difference.
+    fn refuse_early_tests(&mut self) {
+        let Some(at) = self.early_tests else { return };
+        let tells = |var: &Var| {
+            let memory = match var.ty.innermost() {
+                Type::Opaque(opaque) => opaque.kind == OpaqueKind::Image,
+                _ => var.place == Place::StorageBlock || var.name == "gl_FragDepth",
+            };
+            memory && var.written
+        };
+        let discards = self.shader.functions.iter().any(|function| function.discards);
+        if discards || self.shader.vars.iter().any(tells) {
+            let message = "`early_fragment_tests` has no counterpart in WGSL beside `discard`, \
+                           depths and writes to memory";
+            let _: Res<()> = self.refuse(at, message);
+        }
+    }
+}
+
+/// How far the search for calls is with a function.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Visit {
+    Unseen,
+    Entered,
+    Left,
 }
 
 /// A number that stands in the text.

@@ -72,7 +72,7 @@ impl<'a> Checker<'a> {
             Ast::Continue if self.loops > 0 => StmtKind::Continue,
             Ast::Continue => return self.fail(at, "`continue` belongs into a loop"),
             Ast::Discard if self.shader.stage == Stage::Fragment => {
-                self.effects = true;
+                (self.effects, self.discards) = (true, true);
                 StmtKind::Discard
             }
             Ast::Discard => return self.fail(at, "`discard` belongs into a fragment shader"),

@@ -5,8 +5,8 @@ use super::path::has_effects;
 use super::value::{Strength, Value, list_text};
 use crate::builtin::functions::{ATOMICS, BARRIERS};
 use crate::lexer::At;
-use crate::tree::{Expr, Number};
-use crate::types::{Scalar, Type};
+use crate::tree::{Expr, Number, Place, Var};
+use crate::types::{OpaqueKind, Scalar, Type};
 
 /// Functions with other names in WGSL.
 const RENAMED: &[(&str, &str)] = &[
@@ -264,23 +264,23 @@ impl Writer<'_> {
         Value::primary(first, true)
     }
 
+    /// A barrier for the memory of the workgroup, and for buffers and images if there are any.
     fn barrier(&mut self, name: &str, at: At) -> Value {
-        let call = match name {
-            "barrier" | "memoryBarrierShared" => "workgroupBarrier()",
-            "memoryBarrierImage" => "textureBarrier()",
-            _ => "storageBarrier()",
-        };
-        if !matches!(name, "barrier" | "memoryBarrierShared") {
-            self.facts.list.push(super::Fact::Barrier(name.to_owned()));
+        if name != "barrier" {
+            self.refuse(at, format!("`{name}` has a counterpart in WGSL only beside `barrier()`"));
         }
-        if name == "barrier" && self.uses_storage() {
+        let vars = &self.shader.vars;
+        if vars.iter().any(|var| var.place == Place::StorageBlock) {
             self.line(at, "storageBarrier();");
         }
-        Value::primary(call, false)
-    }
-
-    fn uses_storage(&self) -> bool {
-        self.shader.vars.iter().any(|var| var.place == crate::tree::Place::StorageBlock)
+        let is_shared_image = |var: &Var| {
+            let is_image = matches!(var.ty.innermost(), Type::Opaque(opaque) if opaque.kind == OpaqueKind::Image);
+            is_image && !var.access.readonly && !var.access.writeonly
+        };
+        if vars.iter().any(is_shared_image) {
+            self.line(at, "textureBarrier();");
+        }
+        Value::primary("workgroupBarrier()", false)
     }
 
     fn atomic(&mut self, name: &str, arguments: &[Expr], expr: &Expr) -> Value {

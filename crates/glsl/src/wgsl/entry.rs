@@ -6,7 +6,7 @@ use super::output::Fact;
 use super::{Clip, Writer};
 use crate::builtin::variables::{Builtin, Meaning};
 use crate::lexer::At;
-use crate::tree::{Interpolation, Place, Stage, Var};
+use crate::tree::{ExprKind, Interpolation, Number, Place, Stage, Var};
 use crate::types::Type;
 
 /// What the entry point takes and gives.
@@ -60,8 +60,12 @@ impl<'s> Writer<'s> {
         for place in [Place::Input, Place::Output] {
             let mut next = 0;
             let vars = shader.vars.iter().enumerate().filter(|(_, var)| var.place == place);
+            let taken = |var: &Var| {
+                let first = var.layout.location?;
+                Some(first..first.saturating_add(self.location_count(&var.ty).min(64)))
+            };
             let used: BTreeSet<u32> =
-                vars.clone().filter_map(|(_, var)| var.layout.location).collect();
+                vars.clone().filter_map(|(_, var)| taken(var)).flatten().collect();
             for (index, var) in vars {
                 self.plan_interface(index as u32, var, &used, &mut next);
             }
@@ -74,6 +78,17 @@ impl<'s> Writer<'s> {
         self.plan_rest();
         if let Some(mode) = &shader.depth_mode {
             self.facts.list.push(Fact::DepthMode(mode.clone()));
+        }
+    }
+
+    /// WGSL goes on after `discard`, so that loops must know of those in functions.
+    pub(super) fn plan_discards(&mut self) {
+        let mut functions = self.shader.functions.iter();
+        let in_function = functions.any(|function| function.discards && function.name != "main");
+        if in_function && self.shader.functions.iter().any(|function| function.loops) {
+            let name = self.global_name("discarded");
+            self.preamble.push(format!("var<private> {name}: bool;"));
+            self.discarded = Some(name);
         }
     }
 
@@ -229,7 +244,7 @@ impl<'s> Writer<'s> {
             return text;
         }
         let kept = leaf.interpolation;
-        if kept.flat || super::globals::is_integer(&leaf.ty) {
+        if kept.flat || leaf.ty.is_integer() {
             text.push_str("@interpolate(flat) ");
             return text;
         }
@@ -305,8 +320,7 @@ impl<'s> Writer<'s> {
                     let path = format!("{}.{member}", leaf.path);
                     let name = format!("{}_{}", leaf.name, field.name);
                     let mut inner = part(path, name, field.ty.clone(), next);
-                    inner.interpolation.flat |= field.interpolation.flat;
-                    inner.interpolation.linear |= field.interpolation.linear;
+                    inner.interpolation = field.interpolation.with(leaf.interpolation);
                     self.flatten(inner, out, at);
                     next += self.location_count(&field.ty);
                 }
@@ -367,32 +381,37 @@ impl<'s> Writer<'s> {
     fn plan_color(&mut self, index: u32, var: &Var) {
         let name = self.var_name(index);
         self.declare_builtin(index, var);
-        let Type::Array(..) = var.ty else {
+        let Type::Array(_, size) = var.ty else {
             let text = "@location(0) #: vec4f".to_owned();
             self.entry.outputs.push((text, "color".to_owned(), name));
             return;
         };
-        for number in self.color_numbers(index) {
+        for number in self.color_numbers(index, size.unwrap_or(0)) {
             let text = format!("@location({number}) #: vec4f");
             let value = format!("{name}[{number}]");
             self.entry.outputs.push((text, format!("color_{number}"), value));
         }
     }
 
-    /// The elements of `gl_FragData` that are written.
-    fn color_numbers(&self, index: u32) -> BTreeSet<u32> {
+    /// The elements of `gl_FragData` that may be written: all, if one is by an index that is not
+    /// constant, or the array as a whole.
+    fn color_numbers(&self, index: u32, size: u32) -> BTreeSet<u32> {
         let mut found = BTreeSet::new();
+        let (mut named, mut known) = (0, 0);
         for function in &self.shader.functions {
             let Some(body) = &function.body else { continue };
-            super::flow::each_expr(body, self.shader, &mut |expr| {
-                if let crate::tree::ExprKind::Index(base, at) = &expr.kind
-                    && matches!(base.kind, crate::tree::ExprKind::Var(var) if var == index)
-                {
-                    found.extend(Self::constant_of(at).and_then(crate::tree::Number::as_size));
+            super::flow::each_expr(body, self.shader, &mut |expr| match &expr.kind {
+                ExprKind::Var(var) if *var == index => named += 1,
+                ExprKind::Index(base, at) if matches!(base.kind, ExprKind::Var(var) if var == index) => {
+                    if let Some(number) = Self::constant_of(at).and_then(Number::as_size) {
+                        found.insert(number);
+                        known += 1;
+                    }
                 }
+                _ => {}
             });
         }
-        found
+        if named == known { found } else { (0..size).collect() }
     }
 
     fn plan_input(&mut self, index: u32, var: &Var, (builtin, ty): (&str, &str)) {

@@ -187,7 +187,7 @@ impl Writer<'_> {
         self.suffixed = suffixed;
         let [left_value, right_value] = values.as_slice() else { return Value::primary("", true) };
         let pair = ((&left.ty, left_value.clone()), (&right.ty, right_value.clone()));
-        self.binary_values(op, pair.0, pair.1, &left.ty)
+        self.binary_values(op, pair.0, pair.1)
     }
 
     /// A binary operator between texts.
@@ -196,7 +196,6 @@ impl Writer<'_> {
         op: Op,
         (left_ty, left): (&Type, Value),
         (right_ty, right): (&Type, Value),
-        _result: &Type,
     ) -> Value {
         let stable = left.stable && right.stable;
         let matrix = |ty: &Type| matches!(ty, Type::Matrix(..));

@@ -29,7 +29,7 @@ impl Writer<'_> {
                 writer.effect(step);
             }
         });
-        let body = self.block_lines(&content.body);
+        let body = self.loop_body(&content.body, at);
         if content.last {
             self.do_loop(condition, before, body, at);
             return;

@@ -7,8 +7,8 @@ use super::memory::{Mem, Rules};
 use super::output::{Fact, Resource};
 use super::{Writer, names};
 use crate::lexer::At;
-use crate::tree::{Expr, ExprKind, Number, Packing, Place, Var};
-use crate::types::{Opaque, OpaqueKind, Scalar, Type};
+use crate::tree::{Expr, ExprKind, Number, Packing, Place, Stage, Var};
+use crate::types::{Opaque, OpaqueKind, Type};
 
 /// The names of a texture and of its sampler.
 #[derive(Debug, Clone, Default)]
@@ -23,13 +23,20 @@ pub(super) struct OpaqueNames {
 #[derive(Debug, Default)]
 struct Bindings {
     used: BTreeSet<(u32, u32)>,
+    /// Those that the text names: only the variables that it gives them have them.
+    named: BTreeSet<(u32, u32)>,
 }
 
 impl Bindings {
-    fn take(&mut self, group: u32, wanted: Option<u32>) -> u32 {
-        let is_free = |binding: &u32| !self.used.contains(&(group, *binding));
-        let free = (0..).find(|binding| is_free(binding)).unwrap_or(0);
-        let binding = wanted.filter(is_free).unwrap_or(free);
+    /// A binding: that of a variable, that of an element of it, or any.
+    fn take(&mut self, group: u32, wanted: Option<u32>, element: u32) -> u32 {
+        let is_free = |binding: u32| !self.used.contains(&(group, binding));
+        let is_open = |binding: u32| is_free(binding) && !self.named.contains(&(group, binding));
+        let own = wanted.and_then(|binding| match element {
+            0 => is_free(binding).then_some(binding),
+            _ => binding.checked_add(element).filter(|binding| is_open(*binding)),
+        });
+        let binding = own.or_else(|| (0..).find(|binding| is_open(*binding))).unwrap_or(0);
         self.used.insert((group, binding));
         binding
     }
@@ -79,32 +86,30 @@ impl Writer<'_> {
     pub(super) fn plan_globals(&mut self) {
         let uses = self.uses();
         self.atomics.clone_from(&uses.atomics);
-        let mut bindings = Bindings::default();
         let shader = self.shader;
         let explicit = |var: &&Var| var.layout.binding.is_some();
-        let kept: BTreeSet<(u32, u32)> = shader
+        let named = shader
             .vars
             .iter()
             .filter(explicit)
             .map(|var| (var.layout.set.unwrap_or(0), var.layout.binding.unwrap_or(0)))
             .collect();
-        let mut first: Vec<u32> = Vec::new();
-        let mut later: Vec<u32> = Vec::new();
+        let mut bindings = Bindings { used: BTreeSet::new(), named };
+        let (mut first, mut later) = (Vec::new(), Vec::new());
         let mut seen = BTreeSet::new();
         for (index, var) in shader.vars.iter().enumerate() {
             let key = (var.layout.set.unwrap_or(0), var.layout.binding.unwrap_or(0));
-            let explicit = var.layout.binding.is_some() && seen.insert(key);
-            if explicit { &mut first } else { &mut later }.push(index as u32);
+            let is_first = var.layout.binding.is_some() && seen.insert(key);
+            if is_first { &mut first } else { &mut later }.push(index as u32);
         }
         for index in first {
             self.plan_global(index, &uses, &mut bindings);
         }
-        bindings.used.extend(kept);
         for index in later {
             self.plan_global(index, &uses, &mut bindings);
         }
-        self.plan_samplers(&uses, &mut bindings);
-        self.plan_loose(&mut bindings);
+        self.plan_samplers(&mut bindings);
+        self.plan_default_block(&mut bindings);
     }
 
     fn plan_global(&mut self, index: u32, uses: &Uses, bindings: &mut Bindings) {
@@ -157,7 +162,11 @@ impl Writer<'_> {
         }
         let Some(cell) = self.cell(&ty, rules, var.at) else { return };
         self.memory.insert(index, Rc::clone(&cell.mem));
-        let space = match (uniform, var.access.readonly) {
+        let vertex = self.shader.stage == Stage::Vertex;
+        if vertex && !uniform && var.written {
+            self.refuse(var.at, "a vertex shader writes no buffer in WGSL");
+        }
+        let space = match (uniform, var.access.readonly || vertex) {
             (true, _) => "uniform",
             (false, true) => "storage, read",
             (false, false) => "storage, read_write",
@@ -173,8 +182,7 @@ impl Writer<'_> {
         };
         let mut lines = Vec::new();
         for (at, name) in names.into_iter().enumerate() {
-            let wanted = var.layout.binding.map(|binding| binding + at as u32);
-            let binding = bindings.take(group, wanted);
+            let binding = self.binding(index, &name, at as u32, bindings);
             lines.push(format!(
                 "@group({group}) @binding({binding}) var<{space}> {name}: {};",
                 cell.text
@@ -182,6 +190,18 @@ impl Writer<'_> {
             self.add_resource(var.name.clone(), name, (group, binding), None);
         }
         self.declarations.insert(index, lines);
+    }
+
+    /// The binding of an element of a variable; one that the text says otherwise is noted.
+    fn binding(&mut self, index: u32, name: &str, element: u32, bindings: &mut Bindings) -> u32 {
+        let layout = &self.var(index).layout;
+        let found = bindings.take(layout.set.unwrap_or(0), layout.binding, element);
+        if let Some(wanted) = layout.binding.map(|first| first.saturating_add(element))
+            && wanted != found
+        {
+            self.facts.list.push(Fact::Binding(name.to_owned(), wanted, found));
+        }
+        found
     }
 
     fn add_resource(
@@ -281,11 +301,10 @@ impl Writer<'_> {
         let Some(text) = self.opaque_type(index, opaque, uses) else { return };
         let depth = opaque.shadow || uses.compared.contains(&index);
         let group = var.layout.set.unwrap_or(0);
-        let is_first = path.len() == 1 && path[0] == 0 && matches!(var.ty, Type::Array(..));
-        let wanted = var.layout.binding.filter(|_| path.is_empty() || is_first);
-        let binding = bindings.take(group, wanted);
+        let element = self.declarations.get(&index).map_or(0, Vec::len) as u32;
         let (glsl, name) = self.part_name(index, path);
         let name = if path.is_empty() { self.var_name(index) } else { self.global_name(&name) };
+        let binding = self.binding(index, &glsl, element, bindings);
         let line = format!("@group({group}) @binding({binding}) var {name}: {text};");
         self.declarations.entry(index).or_default().push(line);
         if opaque.kind == OpaqueKind::Subpass {
@@ -349,7 +368,7 @@ impl Writer<'_> {
     }
 
     /// Samplers of combined textures come behind all other bindings.
-    fn plan_samplers(&mut self, _uses: &Uses, bindings: &mut Bindings) {
+    fn plan_samplers(&mut self, bindings: &mut Bindings) {
         let keys: Vec<(u32, Vec<u32>)> = self.opaque.keys().cloned().collect();
         for key in keys {
             let Some(opaque) = self.opaque_of(&key) else { continue };
@@ -357,7 +376,7 @@ impl Writer<'_> {
                 continue;
             }
             let group = self.var(key.0).layout.set.unwrap_or(0);
-            let binding = bindings.take(group, None);
+            let binding = bindings.take(group, None, 0);
             let Some(texture) = self.opaque.get(&key).map(|names| names.texture.clone()) else {
                 continue;
             };
@@ -394,7 +413,7 @@ impl Writer<'_> {
     }
 
     /// Uniforms that are in no block become one.
-    fn plan_loose(&mut self, bindings: &mut Bindings) {
+    fn plan_default_block(&mut self, bindings: &mut Bindings) {
         let shader = self.shader;
         let mut members = String::new();
         let rules = Rules { packing: Packing::Std140, row_major: false, uniform: true };
@@ -411,17 +430,23 @@ impl Writer<'_> {
             };
             members.push_str(&format!("    {attribute}{name}: {},\n", cell.text));
             self.memory.insert(index as u32, cell.mem);
-            if let Some(known) = var.init.as_ref().and_then(|init| init.known.as_ref()) {
-                let numbers = known.iter().map(|number| as_f64(*number)).collect();
-                self.facts.list.push(Fact::Initial(var.name.clone(), numbers));
-            }
+            let Some(init) = &var.init else { continue };
+            let Some(known) = &init.known else {
+                self.refuse(
+                    init.at,
+                    "the initial value of this uniform is not computed before the shader runs",
+                );
+                continue;
+            };
+            let numbers = known.iter().map(|number| as_f64(*number)).collect();
+            self.facts.list.push(Fact::Initial(var.name.clone(), numbers));
         }
         if members.is_empty() {
             return;
         }
         let ty = self.global_name("Uniforms");
         let name = self.global_name("uniforms");
-        let binding = bindings.take(0, None);
+        let binding = bindings.take(0, None, 0);
         self.preamble.push(format!(
             "struct {ty} {{\n{members}}}\n@group(0) @binding({binding}) var<uniform> {name}: {ty};"
         ));
@@ -709,9 +734,4 @@ fn atomic_root(expr: &Expr) -> Option<(u32, Option<u32>)> {
         },
         _ => None,
     }
-}
-
-/// Numbers that GLSL and WGSL give the same type.
-pub(super) fn is_integer(ty: &Type) -> bool {
-    matches!(ty.innermost().scalar(), Some(Scalar::Int | Scalar::Uint))
 }

@@ -24,7 +24,7 @@ impl Writer<'_> {
             let rest = text.strip_prefix("fn ").unwrap_or(text);
             return rest.split('(').next().unwrap_or_default().to_owned();
         }
-        while self.taken.contains(name) && !self.globals.contains(name) {
+        if self.taken.contains(name) && !self.globals.contains(name) {
             self.globals.insert(name.to_owned());
         }
         let name = self.global_name(name);

@@ -78,6 +78,7 @@ pub fn write(
     writer.name_all();
     writer.plan_globals();
     writer.plan_entry();
+    writer.plan_discards();
     let mut bodies: Vec<Lines> = Vec::new();
     for item in &shader.order {
         let lines = writer.item(*item);
@@ -135,6 +136,8 @@ pub(crate) struct Writer<'s> {
     /// Whether derivatives are taken anywhere.
     derivatives: bool,
     clip_distances: bool,
+    /// The variable that says that a function other than `main` met a `discard`.
+    discarded: Option<String>,
 }
 
 impl<'s> Writer<'s> {
@@ -177,6 +180,7 @@ impl<'s> Writer<'s> {
             suffixed: false,
             derivatives: false,
             clip_distances: false,
+            discarded: None,
         }
     }
 

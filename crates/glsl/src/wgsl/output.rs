@@ -148,8 +148,8 @@ pub enum Fact {
     DepthMode(String),
     /// A location that the text leaves open: an input or output, and what it got.
     Location(String, u32),
-    /// A memory barrier that reaches further in GLSL.
-    Barrier(String),
+    /// A binding that is not the text's: the resource, the text's number, and what it got.
+    Binding(String, u32, u32),
 }
 
 /// The side table.

@@ -154,7 +154,7 @@ impl Writer<'_> {
             return;
         }
         let before = self.read(path);
-        let result = self.binary_values(op, (&left.ty, before), (&right.ty, value), &left.ty);
+        let result = self.binary_values(op, (&left.ty, before), (&right.ty, value));
         self.write_path(at, path, &result);
     }
 
@@ -179,7 +179,7 @@ impl Writer<'_> {
             Some(op) => {
                 let base = self.read(&path);
                 let before = swizzled(&base, size, &letters);
-                self.binary_values(op, (&left.ty, before), (&right.ty, value), &left.ty)
+                self.binary_values(op, (&left.ty, before), (&right.ty, value))
             }
         };
         if let [letter] = letters.as_slice() {

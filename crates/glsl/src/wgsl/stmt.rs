@@ -3,8 +3,9 @@
 use super::globals::OpaqueNames;
 use super::output::Lines;
 use super::{Line, Writer, names};
+use crate::builtin::functions::BARRIERS;
 use crate::lexer::At;
-use crate::tree::{Dir, Place, Stmt, StmtKind};
+use crate::tree::{Dir, Expr, ExprKind, Place, Stmt, StmtKind};
 use crate::types::{OpaqueKind, Type};
 
 impl Writer<'_> {
@@ -130,8 +131,10 @@ impl Writer<'_> {
 
     /// Statements of a block, up to the first that nothing follows.
     pub(super) fn statements(&mut self, list: &[Stmt]) {
-        for statement in list {
-            self.statement(statement);
+        for (at, statement) in list.iter().enumerate() {
+            if !is_beside_barrier(list, at) {
+                self.statement(statement);
+            }
             if !falls_through(std::slice::from_ref(statement)) {
                 return;
             }
@@ -218,7 +221,30 @@ impl Writer<'_> {
 
     /// WGSL goes on after `discard`, so the function is left.
     fn discard(&mut self, at: At) {
+        if let Some(name) = &self.discarded {
+            let text = format!("{name} = true;");
+            self.line(at, text);
+        }
         self.line(at, "discard;");
+        self.leave(at);
+    }
+
+    /// The body of a loop. After a `discard` in a function, what a loop waits for may never come,
+    /// so each round asks for it.
+    pub(super) fn loop_body(&mut self, body: &[Stmt], at: At) -> Lines {
+        let ((), mut lines) = self.capture(|writer| {
+            let Some(name) = writer.discarded.clone() else { return };
+            writer.line(at, format!("if {name} {{"));
+            let ((), inner) = writer.capture(|writer| writer.leave(at));
+            writer.lines.nest(inner);
+            writer.line(at, "}");
+        });
+        lines.extend(self.block_lines(body));
+        lines
+    }
+
+    /// Ends the function, with any result.
+    fn leave(&mut self, at: At) {
         let Some(function) = self.function else { return };
         let function = &self.shader.functions[function as usize];
         if function.name == "main" {
@@ -266,6 +292,27 @@ impl Lines {
             }
         }
         out
+    }
+}
+
+/// Whether a statement is a barrier for memory beside `barrier()`, which is one for all memory.
+fn is_beside_barrier(list: &[Stmt], at: usize) -> bool {
+    let of_memory =
+        |statement: &&Stmt| barrier_name(statement).is_some_and(|name| name != "barrier");
+    if !of_memory(&&list[at]) {
+        return false;
+    }
+    let before = list[..at].iter().rev().find(|statement| !of_memory(statement));
+    let after = list[at..].iter().find(|statement| !of_memory(statement));
+    [before, after].into_iter().flatten().any(|other| barrier_name(other) == Some("barrier"))
+}
+
+fn barrier_name(statement: &Stmt) -> Option<&'static str> {
+    match &statement.kind {
+        StmtKind::Expr(Expr { kind: ExprKind::Builtin(name, _), .. }) => {
+            BARRIERS.contains(name).then_some(*name)
+        }
+        _ => None,
     }
 }
 
