@@ -53,6 +53,20 @@ pub struct Shader {
     pub depth_mode: Option<String>,
 }
 
+impl Shader {
+    /// Whether a type is or has a texture or a sampler.
+    pub fn has_opaque(&self, ty: &Type) -> bool {
+        match ty.innermost() {
+            Type::Opaque(_) => true,
+            Type::Struct(index) => {
+                let members = &self.structs[*index as usize].members;
+                members.iter().any(|field| self.has_opaque(&field.ty))
+            }
+            _ => false,
+        }
+    }
+}
+
 /// One declaration of the text.
 #[derive(Debug, Clone, Copy)]
 pub enum Item {

@@ -197,7 +197,7 @@ impl<'a> Checker<'a> {
                 return self.fail(name.at, "`inout` is for parameters");
             }
         };
-        if self.has_opaque(ty) && place != Place::Uniform {
+        if self.shader.has_opaque(ty) && place != Place::Uniform {
             return self.fail(name.at, "a texture or sampler is a `uniform`");
         }
         if self.shader.stage == Stage::Compute && matches!(place, Place::Input | Place::Output) {
@@ -333,7 +333,7 @@ impl<'a> Checker<'a> {
     fn check_block_members(&mut self, place: Place, members: &[Field]) -> Res<()> {
         let last = members.len() - 1;
         for (index, field) in members.iter().enumerate() {
-            if self.has_opaque(&field.ty) {
+            if self.shader.has_opaque(&field.ty) {
                 return self.fail(field.at, "a texture or sampler is not in a block");
             }
             let open = has_unsized(&field.ty);
@@ -371,7 +371,7 @@ impl<'a> Checker<'a> {
     pub(super) fn is_passable(&self, ty: &Type) -> bool {
         match ty {
             Type::Opaque(opaque) => opaque.kind != OpaqueKind::Other,
-            _ => !self.has_opaque(ty),
+            _ => !self.shader.has_opaque(ty),
         }
     }
 }

@@ -95,7 +95,7 @@ impl<'a> Checker<'a> {
             _ => None,
         };
         let ty = yes.ty.clone();
-        if self.has_opaque(&ty) {
+        if self.shader.has_opaque(&ty) {
             return self.fail(at, "`?:` does not choose between textures");
         }
         let kind = ExprKind::Ternary(Box::new(condition), Box::new(yes), Box::new(no));
@@ -338,18 +338,6 @@ impl<'a> Checker<'a> {
         match size {
             Some(size) => Ok(int_literal(size as i32, at)),
             None => Ok(Expr { kind: ExprKind::Length(Box::new(base)), ty: INT, at, known: None }),
-        }
-    }
-
-    /// Whether a type is or has a texture or a sampler.
-    pub(super) fn has_opaque(&self, ty: &Type) -> bool {
-        match ty.innermost() {
-            Type::Opaque(_) => true,
-            Type::Struct(index) => {
-                let members = &self.shader.structs[*index as usize].members;
-                members.iter().any(|field| self.has_opaque(&field.ty))
-            }
-            _ => false,
         }
     }
 

@@ -10,7 +10,7 @@ use crate::types::Type;
 impl<'a> Checker<'a> {
     pub(super) fn function(&mut self, function: &'a ast::Function<'a>) -> Res<()> {
         let ret = self.spec_type(&function.ty, NO_SIZES)?;
-        if self.has_opaque(&ret) {
+        if self.shader.has_opaque(&ret) {
             return self.fail(function.ty.at, "a function does not return a texture or sampler");
         }
         let mut params = Vec::with_capacity(function.params.len());

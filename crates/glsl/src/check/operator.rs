@@ -112,7 +112,7 @@ impl<'a> Checker<'a> {
                 Err(left) => return self.fail_operands(op, &left, &right, at),
             },
         };
-        if left.ty == Type::Void || self.has_opaque(&left.ty) {
+        if left.ty == Type::Void || self.shader.has_opaque(&left.ty) {
             return self.fail_operands(op, &left, &right, at);
         }
         Ok(fold::binary_expr(op, left, right, BOOL, at))

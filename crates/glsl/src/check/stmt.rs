@@ -237,7 +237,7 @@ impl<'a> Checker<'a> {
         for declarator in &vars.names {
             let name = declarator.name;
             let ty = self.after_name(base.clone(), &declarator.sizes)?;
-            if ty == Type::Void || self.has_opaque(&ty) {
+            if ty == Type::Void || self.shader.has_opaque(&ty) {
                 let found = self.type_name(&ty);
                 return self.fail(name.at, format!("a variable of a function is not `{found}`"));
             }

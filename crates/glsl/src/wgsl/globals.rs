@@ -225,7 +225,7 @@ impl Writer<'_> {
     ) {
         match ty {
             Type::Opaque(opaque) => self.declare_opaque(index, path, opaque, uses, bindings),
-            Type::Array(element, Some(size)) if self.has_opaque(element) => {
+            Type::Array(element, Some(size)) if self.shader.has_opaque(element) => {
                 if *size > 64 || self.opaque.len() > 256 {
                     self.refuse(
                         self.var(index).at,
@@ -239,7 +239,7 @@ impl Writer<'_> {
                     path.pop();
                 }
             }
-            Type::Array(element, None) if self.has_opaque(element) => {
+            Type::Array(element, None) if self.shader.has_opaque(element) => {
                 self.refuse(self.var(index).at, "an array of textures has a size in WGSL");
             }
             Type::Struct(content) => {
@@ -251,17 +251,6 @@ impl Writer<'_> {
                 }
             }
             _ => {}
-        }
-    }
-
-    pub(super) fn has_opaque(&self, ty: &Type) -> bool {
-        match ty.innermost() {
-            Type::Opaque(_) => true,
-            Type::Struct(index) => {
-                let members = &self.shader.structs[*index as usize].members;
-                members.iter().any(|field| self.has_opaque(&field.ty))
-            }
-            _ => false,
         }
     }
 
