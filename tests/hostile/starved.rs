@@ -58,7 +58,7 @@ fn little_memory() -> Outcome {
     // Below this, the system cannot even start the program.
     let starts =
         |kib: &u64| run_within(*kib, &folder, &["--version"]).is_ok_and(|o| o.status.success());
-    let least = (1..64).map(|step| step * 16 << 10).find(starts).ok_or("it never starts")?;
+    let least = (1..64).map(|step| (step * 16) << 10).find(starts).ok_or("it never starts")?;
     let mut starved = 0;
     for kib in (0..12).map(|step| least + step * 8 * 1024) {
         let output = run_within(kib, &folder, &["gen", "--no-cache", "-o", "bundle"])?;
