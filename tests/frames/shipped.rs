@@ -75,9 +75,12 @@ pub fn drivers(targets: &[Target]) -> Result<Vec<Driver>, String> {
     Ok(drivers)
 }
 
+/// The variable with the number of permutations that are drawn.
+pub const PERMUTATIONS: &str = "LAMPLIGHT_FRAMES_PERMUTATIONS";
+
 /// How many permutations are drawn: the number in the environment, or the usual one.
 pub fn most_points(usual: usize) -> Result<usize, String> {
-    match std::env::var("LAMPLIGHT_FRAMES_PERMUTATIONS") {
+    match std::env::var(PERMUTATIONS) {
         Ok(text) => text.parse().map_err(|_| format!("`{text}` is not a number")),
         Err(_) => Ok(usual),
     }

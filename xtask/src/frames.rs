@@ -1,5 +1,6 @@
 //! `cargo xtask frames`: permutations of programs, drawn from the bytes that a bundle holds of
-//! each target, by the tests `frames/shipped` and `metal::frames`.
+//! each target, by the tests `frames/shipped` and `metal::frames`; without `--target`, from the
+//! sources too, in both languages on both backends, by the tests `frames/`.
 
 use xtask::process::{self, root};
 use xtask::{CommandFailure, CommandResult};
@@ -45,7 +46,9 @@ pub fn run(arguments: &[String]) -> CommandResult {
     if !others.is_empty() {
         variables.push(("LAMPLIGHT_FRAMES_TARGETS".to_owned(), others.join(",")));
     }
-    if targets.is_empty() || !others.is_empty() {
+    if targets.is_empty() {
+        tests("frames/", &variables)?;
+    } else if !others.is_empty() {
         tests("frames/shipped", &variables)?;
     }
     if msl { tests("metal::frames", &variables) } else { Ok(()) }
