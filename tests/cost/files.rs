@@ -87,7 +87,8 @@ pub fn iterations() -> Outcome {
     };
     let (once, open) = cycles(&[])?;
     let (again, _) = cycles(&["--iterations", "1"])?;
-    let ((two, closed), (sixteen, _)) = (cycles(&["--iterations", "2"])?, cycles(&["--iterations", "16"])?);
+    let ((two, closed), (sixteen, _)) =
+        (cycles(&["--iterations", "2"])?, cycles(&["--iterations", "16"])?);
     let told = lamplight(&[name, "--gpu", "navi21"])?;
     let listed = String::from_utf8_lossy(&told.stdout).contains("Loops of unknown length");
     let one = two - once;
@@ -97,7 +98,8 @@ pub fn iterations() -> Outcome {
         || sixteen - once != 15 * one
         || !listed
     {
-        let what = format!("{once}, {again}, {two}, {sixteen} cycles for once, 1, 2 and 16 iterations");
+        let what =
+            format!("{once}, {again}, {two}, {sixteen} cycles for once, 1, 2 and 16 iterations");
         return Err(format!("{what}; {open} and {closed} open loops, listed: {listed}").into());
     }
     Ok(())

@@ -170,7 +170,8 @@ pub fn run_cost(
     let cache = arguments.cached.open(arguments.manifest.as_deref())?;
     let subjects = subjects::requested_subjects(&arguments, form)?;
     let devices = opened.map_err(Failure::environment)?;
-    let meter = Meter { devices: &devices, cache: cache.as_ref(), iterations: &arguments.iterations };
+    let meter =
+        Meter { devices: &devices, cache: cache.as_ref(), iterations: &arguments.iterations };
     let costs = measure_costs(meter, &subjects)?;
     let driver = devices.first().map_or("", |device| &device.driver);
     print_costs(&arguments, driver, &costs)?;
