@@ -126,7 +126,7 @@ fn compare_within(device: &Device, text: &str, tolerance: f32) -> Result<(), Str
 /// The translation of a compute shader.
 fn translated(text: &str) -> Result<String, String> {
     let translated = translate(text, Stage::Compute, SourceId(0), Default::default());
-    let (written, _) = translated.map_err(|problems| {
+    let written = translated.map_err(|problems| {
         let first = &problems[0];
         let place = first.labels.first().map(|label| &text[label.span.range()]);
         format!("refused: {} at `{}`", first.message, place.unwrap_or_default())

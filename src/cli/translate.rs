@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::failure::{DiagnosticForm, Failure, print_warnings};
+use super::failure::{DiagnosticForm, Failure};
 use super::input::InputArguments;
 use super::terminal::write_data;
 use crate::bundle::{Language, Stage};
@@ -69,9 +69,7 @@ pub fn run_translate(arguments: Arguments, form: DiagnosticForm) -> Result<(), F
     let text = &ready.composed.text;
     let translated = crate::glsl::translate(text, stage, COMPOSED, Options { clip });
     match translated {
-        Ok((written, warnings)) => {
-            let warnings = in_authors_text(warnings, &ready.composed.map);
-            print_warnings(&ready.sources, &warnings, form);
+        Ok(written) => {
             check_written(&written.text)?;
             Ok(write_data(with_notes(&written).as_bytes())?)
         }

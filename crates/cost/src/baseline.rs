@@ -1,4 +1,5 @@
-//! Recorded costs, and which figures rose since; and the cache of figures that were measured before.
+//! Recorded costs, and which figures rose since; and the cache of figures that were measured
+//! before.
 
 use crate::device::Device;
 use crate::pipeline::Pipeline;

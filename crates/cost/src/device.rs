@@ -115,9 +115,9 @@ impl Device {
         }
     }
 
-    /// Compiles a pipeline and gives the figures of each of its stages. `iterations` says how often loops
-    /// run whose code does not say it, in the order of the code; the last number holds for all
-    /// further ones, and without any each counts once.
+    /// Compiles a pipeline and gives the figures of each of its stages. `iterations` says how often
+    /// loops run whose code does not say it, in the order of the code; the last number holds for
+    /// all further ones, and without any each counts once.
     ///
     /// # Errors
     /// What the driver says where it refuses the pipeline, or what about the machine code is not
@@ -175,8 +175,9 @@ impl Device {
         let ask = self.executables.fp().get_pipeline_executable_internal_representations_khr;
         let mut count = found.len() as u32;
         // SAFETY: as above; each `p_data` has the size that the driver named, and `texts` lives on.
-        let told = unsafe { ask(self.executables.device(), info, &mut count, found.as_mut_ptr()) };
-        told.result()?;
+        let answer =
+            unsafe { ask(self.executables.device(), info, &mut count, found.as_mut_ptr()) };
+        answer.result()?;
         let place =
             found.iter().position(|one| one.name_as_c_str().is_ok_and(|name| name == ASSEMBLY));
         let text = place.and_then(|place| texts.get(place)).map_or(&[][..], Vec::as_slice);

@@ -26,10 +26,9 @@ pub fn translate(
     stage: tree::Stage,
     source: SourceId,
     options: wgsl::Options,
-) -> Result<(wgsl::Written, Diagnostics), Diagnostics> {
+) -> Result<wgsl::Written, Diagnostics> {
     let parsed = parse::parse(text);
-    let checked = check::check(text, &parsed, stage, source)?;
+    let shader = check::check(text, &parsed, stage, source)?;
     let comments = &parsed.lexed.comments;
-    let written = wgsl::write(&checked.shader, text, comments, source, options)?;
-    Ok((written, checked.warnings))
+    wgsl::write(&shader, text, comments, source, options)
 }

@@ -26,7 +26,7 @@ pub fn tests() -> Vec<Trial> {
 fn read(stage: Stage, text: &str) -> Result<(Module, String, Facts), Failed> {
     let text = format!("#version 450\n{text}\n");
     let options = wgsl::Options::default();
-    let (written, _) = translate(&text, stage, SourceId(0), options)
+    let written = translate(&text, stage, SourceId(0), options)
         .map_err(|problems| format!("{text}: {}", problems[0].message))?;
     let module = naga::front::wgsl::parse_str(&written.text)
         .map_err(|error| error.emit_to_string(&written.text))?;

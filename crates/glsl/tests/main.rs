@@ -50,7 +50,7 @@ fn translated() -> Vec<Trial> {
 /// The translation is as recorded, and naga accepts it.
 fn check(name: &str, text: &str) -> Result<(), Failed> {
     let translated = translate(text, stage_of(name), SourceId(0), Default::default());
-    let (written, _) = translated.map_err(|problems| format!("refused: {problems:?}"))?;
+    let written = translated.map_err(|problems| format!("refused: {problems:?}"))?;
     let mut shown = written.text.clone();
     for resource in &written.facts.resources {
         shown.push_str(&format!("// {resource:?}\n"));

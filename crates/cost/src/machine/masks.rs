@@ -1,10 +1,10 @@
 //! Which threads are active, as far as one set of them is known to lie within another.
 //!
-//! A vector instruction writes the registers of active threads only. So a number is one of all threads
-//! of a loop only if all were active where it was written. The masks of threads are named, not
-//! computed: an instruction that takes threads away makes a new mask within the old one, a copy has
-//! the name of its source, and where paths meet, the new mask lies within what they have in common.
-//! Of everything else, such as a union, nothing is known.
+//! A vector instruction writes the registers of active threads only. So a number is one of all
+//! threads of a loop only if all were active where it was written. The masks of threads are named,
+//! not computed: an instruction that takes threads away makes a new mask within the old one, a copy
+//! has the name of its source, and where paths meet, the new mask lies within what they have in
+//! common. Of everything else, such as a union, nothing is known.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
@@ -13,8 +13,9 @@ use super::flow::Flow;
 use super::registers::{Registers, written_registers};
 use super::text::{Block, Instruction};
 
-/// Names a mask by the place that makes it: the block, the index of the instruction, and the registers
-/// that it writes. A block that begins with a mask of its own has the index of no instruction.
+/// Names a mask by the place that makes it: the block, the index of the instruction, and the
+/// registers that it writes. A block that begins with a mask of its own has the index of no
+/// instruction.
 type Name = Option<(usize, usize, Registers)>;
 
 /// The name of the mask of all threads.

@@ -4,7 +4,8 @@
 //!
 //! The text is the driver's disassembly. A cycle is the time in which a SIMD issues one vector
 //! instruction at full rate for 64 threads: 4 clock cycles on GCN, 2 on RDNA, where two waves of 32
-//! threads take as long as one of 64. So counts of both can be compared. Waiting, caches and the overlap of units are not counted.
+//! threads take as long as one of 64. So counts of both can be compared. Waiting, caches and the
+//! overlap of units are not counted.
 
 mod flow;
 mod interval;
@@ -48,7 +49,7 @@ pub enum MachineError {
     UnknownInstructions(Vec<String>),
     /// A branch to a place that has no label.
     UnknownTarget(String),
-    /// The disassembler could not read these words, nor could they be told from their neighbours.
+    /// The disassembler could not read these words, nor could they be distinguished from their neighbours.
     Unreadable(String),
     /// A loop is entered at two places.
     Irreducible(String),

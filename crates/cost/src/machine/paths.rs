@@ -2,8 +2,8 @@
 //!
 //! A wave takes both sides of an `if` where its threads differ, one of them where they agree, and
 //! never none: the branch that skips the second side is not taken by a wave that skipped the first.
-//! For each unit the range is that of all such paths. Paths are not checked for more: two branches on
-//! the same condition count as independent.
+//! For each unit the range is that of all such paths. Paths are not checked for more: two branches
+//! on the same condition count as independent.
 
 use std::collections::BTreeMap;
 

@@ -107,7 +107,7 @@ fn length_of(words: &[u32]) -> Option<usize> {
     }
 }
 
-/// The part of a first word that tells instructions of an encoding apart.
+/// The part of a first word that distinguishes the instructions of an encoding.
 fn opcode_of(word: u32) -> u32 {
     match word >> 26 {
         0b11_1101 => word & 0xfffc_0000,

@@ -1,10 +1,10 @@
 //! How often loops run, as far as the code says it.
 //!
-//! A counter is a register that begins at a constant, is changed by a constant once in each iteration,
-//! and is compared with a limit where the loop is left. The limit is a constant, or a number that
-//! is at most a constant: the compiler keeps `min(count, MAX_LIGHTS)`. A vector register has a value
-//! for each thread: what is known of it must hold for all threads in the loop. Everything else is
-//! unknown.
+//! A counter is a register that begins at a constant, is changed by a constant once in each
+//! iteration, and is compared with a limit where the loop is left. The limit is a constant, or a
+//! number that is at most a constant: the compiler keeps `min(count, MAX_LIGHTS)`. A vector
+//! register has a value for each thread: what is known of it must hold for all threads in the loop.
+//! Everything else is unknown.
 
 use super::flow::{Flow, Loop};
 use super::interval::{Interval, immediate_of};
@@ -22,8 +22,8 @@ pub enum TripCount {
     Exactly { trips: u64, exit: usize },
     /// At most so often; the counter is tested in this block.
     AtMost { trips: u64, exit: usize },
-    /// The part before an exit, or the one behind it, whichever has more to do, runs so often, as the
-    /// caller says.
+    /// The part before an exit, or the one behind it, whichever has more to do, runs so often, as
+    /// the caller says.
     Given(u64),
     /// Not known: the same, once.
     Unknown,
@@ -246,7 +246,8 @@ impl<'a> Counters<'a> {
             true => change.1 < test.1,
             false => self.flow.dominates(change.0, test.0),
         };
-        // If the change is neither before the test nor behind it in each iteration, it is not known.
+        // If the change is neither before the test nor behind it in each iteration, it is not
+        // known.
         let is_behind = change.0 == test.0 || self.flow.dominates(test.0, change.0);
         match (is_before, is_behind) {
             (true, _) => Some((first + step, step)),

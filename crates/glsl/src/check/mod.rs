@@ -45,16 +45,7 @@ enum Symbol {
     Functions(Vec<u32>),
 }
 
-/// What checking gives.
-#[derive(Debug)]
-pub struct Checked {
-    /// The typed tree.
-    pub shader: Shader,
-    /// Warnings.
-    pub warnings: Diagnostics,
-}
-
-/// Checks a parsed text of a stage. The spans of diagnostics are in `source`.
+/// Checks a parsed text of a stage, and gives its typed tree. The spans of diagnostics are in `source`.
 ///
 /// # Errors
 /// Every mistake of the text: of its grammar, or of its types.
@@ -63,7 +54,7 @@ pub fn check(
     parsed: &Parsed<'_>,
     stage: Stage,
     source: SourceId,
-) -> Result<Checked, Diagnostics> {
+) -> Result<Shader, Diagnostics> {
     let version = Version::read(text, &parsed.lexed);
     let mut checker = Checker::new(stage, version, source);
     for error in &parsed.errors {
@@ -73,8 +64,7 @@ pub fn check(
         let _: Res<()> = checker.item(item, *at);
     }
     checker.finish();
-    let Checker { shader, problems, warnings, .. } = checker;
-    if problems.is_empty() { Ok(Checked { shader, warnings }) } else { Err(problems) }
+    if checker.problems.is_empty() { Ok(checker.shader) } else { Err(checker.problems) }
 }
 
 pub(crate) struct Checker<'a> {
@@ -101,7 +91,6 @@ pub(crate) struct Checker<'a> {
     loops: u32,
     switches: u32,
     problems: Diagnostics,
-    warnings: Diagnostics,
 }
 
 impl<'a> Checker<'a> {
@@ -133,7 +122,6 @@ impl<'a> Checker<'a> {
             loops: 0,
             switches: 0,
             problems: Vec::new(),
-            warnings: Vec::new(),
         }
     }
 

@@ -139,7 +139,7 @@ fn accepted_text(file: &Path, stage: &str, includes: &[String]) -> Option<String
 /// Whether a text is translated to WGSL that naga accepts. The error is the cause, without names.
 fn translated(text: &str, stage: Stage) -> Result<(), String> {
     let written = lamplight::glsl::translate(text, stage, SourceId(0), Default::default());
-    let (written, _) = written.map_err(|problems| {
+    let written = written.map_err(|problems| {
         problems.first().map_or(String::new(), |problem| problem.message.clone())
     })?;
     let composed = Composed::of_text(Language::Wesl, None, written.text);
