@@ -11,23 +11,25 @@
 
 /// The optical depth of fog whose density falls exponentially with height.
 ///
-/// The view's transmittance is `exp(-depth)`.
+/// The view's transmittance is `exp(-depth)`. Upwards, the depth of a long view nears `density*exp(-falloff*(y0 - base))/(falloff*dy)`, so a sky dome may be as far as the frame likes.
 ///
 /// Parameters: `y0` height of the eye, scene units; `base` height at which the fog has its density, scene units; `dy` the unit view direction's component upwards, [-1, 1]; `dist` length of the view, scene units, at least 0; `density` at the base, 1/scene units, at least 0; `falloff` of the density with height, 1/scene units, at least 0.
 /// Returns: `density*exp(-falloff*(y0 - base))*(1 - exp(-x))/x*dist` with `x = falloff*dy*dist`, at least 0.
-/// Source: Wenzel, "Real-time Atmospheric Effects in Games", SIGGRAPH 2006; Quilez, "Better Fog", 2010.
-/// Edges: constant fog for a `falloff` of 0; `density*dist` at a level view at the base; a negative `dist`, `density` or `falloff` counts as 0, both exponents are clamped to [-60, 60], densities to 1e6 and distances to 1e6; never above 1e30; `y0`, `base` and `dy` are not clamped.
-/// Error model: relative 2^-20 + 2^-23*(|falloff*(y0 - base)| + |x|).
+/// Source: Wenzel, "Real-time Atmospheric Effects in Games", SIGGRAPH 2006; Quilez, "Better Fog", 2010. The larger exponential, that of the view's lower end, is put before the brackets, so the rest is a mean of [0, 1].
+/// Edges: constant fog for a `falloff` of 0; `density*dist` at a level view at the base; a negative `dist`, `density` or `falloff` counts as 0, and each counts as at most 1e6; never above 1e20, which is opaque; where fog is more than `exp(60)` times as dense as at the base, it is that dense; `y0`, `base` and `dy` are not clamped.
+/// Error model: relative 2^-20 + 2^-22*falloff*(|y0 - base| + |dy*dist|).
 float fog_height(float y0, float dy, float dist, float density, float falloff, float base) {
-    float fall = max(falloff, 0.0);
+    float fall = clamp(falloff, 0.0, 1e6);
     float far = clamp(dist, 0.0, 1e6);
-    float x = clamp(fall * dy * far, -60.0, 60.0);
-    float here = clamp(density, 0.0, 1e6) * exp(clamp(fall * (base - y0), -60.0, 60.0));
+    float rise = dy * far;
+    float most = exp(min(fall * (base - y0 - min(rise, 0.0)), 60.0));
+    float whole = clamp(density, 0.0, 1e6) * far * most;
+    float x = fall * abs(rise);
     // (1 - exp(-x))/x loses its digits near 0, where its series has few terms.
-    if (abs(x) < 0.1) {
-        return min(far * here * (1.0 - x * (0.5 - x * (0.16666667 - x * 0.041666668))), 1e30);
+    if (x < 0.1) {
+        return min(whole * (1.0 - x * (0.5 - x * (0.16666667 - x * 0.041666668))), 1e20);
     }
-    return min(far * here * ((1.0 - exp(-x)) / x), 1e30);
+    return min(whole * ((1.0 - exp(-x)) / x), 1e20);
 }
 
 /// What fog of an optical depth leaves of the light.
