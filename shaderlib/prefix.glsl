@@ -299,6 +299,7 @@
 #define vsm_moments_slope(p0, p1, p2) lamplight_vsm_moments_slope(p0, p1, p2)
 #define vsm_visibility(p0, p1, p2, p3, p4) lamplight_vsm_visibility(p0, p1, p2, p3, p4)
 #define window(p0, p1) lamplight_window(p0, p1)
+#define world_tangent(p0, p1) lamplight_world_tangent(p0, p1)
 #define wrap(p0, p1, p2) lamplight_wrap(p0, p1, p2)
 
 #else
@@ -595,6 +596,7 @@
 #undef vsm_moments_slope
 #undef vsm_visibility
 #undef window
+#undef world_tangent
 #undef wrap
 
 #endif

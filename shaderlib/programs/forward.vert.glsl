@@ -7,6 +7,9 @@
 #include "../lighting/classic.glsl"
 #include "../math/safe.glsl"
 #endif
+#if NORMAL_MAP || ANISOTROPY
+#include "../surface/normal.glsl"
+#endif
 #include "forward.glsl"
 
 layout(location = 0) in vec3 in_position;
@@ -51,6 +54,7 @@ layout(location = 8) out vec3 out_reflected;
 
 /// What is drawn.
 layout(std140, set = 2, binding = 0) uniform Object {
+    /// It may mirror. Then fronts are clockwise, which the engine tells the rasteriser.
     mat4 world_from_object;
     /// The inverse transpose of the former, for normals.
     mat4 normal_from_object;
@@ -74,7 +78,7 @@ void main() {
     out_light_uv = in_light_uv;
 #endif
 #if NORMAL_MAP || ANISOTROPY
-    out_tangent = vec4((object.world_from_object * vec4(in_tangent.xyz, 0.0)).xyz, in_tangent.w);
+    out_tangent = world_tangent(in_tangent, object.world_from_object);
 #endif
 #if MATERIAL == MATERIAL_ARRAY
     out_material = in_material;

@@ -3,6 +3,10 @@
 //!
 //! Made from `gbuffer.wesl` by `cargo xtask docs`: edit that, not this file.
 
+#if NORMAL_MAP
+#include "../surface/normal.glsl"
+#endif
+
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_color;
@@ -31,6 +35,7 @@ layout(std140, set = 0, binding = 0) uniform Camera {
 
 /// What is drawn.
 layout(std140, set = 2, binding = 0) uniform Object {
+    /// It may mirror. Then fronts are clockwise, which the engine tells the rasteriser.
     mat4 world_from_object;
     /// The inverse transpose of the former, for normals.
     mat4 normal_from_object;
@@ -46,7 +51,7 @@ void main() {
     out_uv = in_uv;
 #endif
 #if NORMAL_MAP
-    out_tangent = vec4((object.world_from_object * vec4(in_tangent.xyz, 0.0)).xyz, in_tangent.w);
+    out_tangent = world_tangent(in_tangent, object.world_from_object);
 #endif
     out_material = in_material;
 }

@@ -37,6 +37,8 @@ vec3 face_normal(vec3 a, vec3 b, vec3 c) {
 
 /// The normal bent by a normal map.
 ///
+/// On the back of a surface, whose normal is turned round, `-tangent` bends it: the bent normal is the opposite of that of the front.
+///
 /// Parameters: `n` unit normal; `tangent` unit tangent in `xyz`, the same space, with the bitangent's sign, 1 or -1, in `w`; `texel` value of the normal map, [0, 1] in each channel, where 0.5 stands for 0.
 /// Returns: unit normal, in that space.
 /// Source: Blinn, "Simulation of Wrinkled Surfaces", 1978; the tangent's sign as in Khronos Group, glTF 2.0, "Meshes".
@@ -123,6 +125,21 @@ vec3 spheremap_decode(vec2 e) {
     vec2 f = 4.0 * e - 2.0;
     float s = min(dot(f, f), 4.0);
     return vec3(f * sqrt(1.0 - 0.25 * s), 1.0 - 0.5 * s);
+}
+
+/// A tangent in the world, with the sign of the bitangent there.
+///
+/// An object that is mirrored has its bitangent on the other side of the normal and the tangent.
+///
+/// Parameters: `tangent` in `xyz`, in the object's space, with the bitangent's sign, 1 or -1, in `w`; `world_from_object` an affine transform, for column vectors.
+/// Returns: the tangent in `xyz`, not unit, and the sign in `w`, which changes if the determinant is below 0.
+/// Source: Khronos Group, glTF 2.0, "Meshes": the bitangent is the cross product of normal and tangent times `w`; a cross product changes its sign with what mirrors.
+/// Edges: the sign stays for a `world_from_object` whose determinant is 0; a zero `tangent` stays zero; `w` of any size is kept.
+/// Error model: absolute 6*2^-23*s*|t|, with s the largest member and t the tangent; a determinant that is 0 but for rounding may have either sign.
+vec4 world_tangent(vec4 tangent, mat4 world_from_object) {
+    mat4 m = world_from_object;
+    bool is_mirrored = determinant(mat3(m[0].xyz, m[1].xyz, m[2].xyz)) < 0.0;
+    return vec4((m * vec4(tangent.xyz, 0.0)).xyz, is_mirrored ? -tangent.w : tangent.w);
 }
 
 #ifdef LAMPLIGHT_PREFIX

@@ -139,17 +139,19 @@ impl Shape {
         self
     }
 
-    /// The shape moved, turned or scaled by a matrix.
+    /// The shape moved, turned, scaled or mirrored by a matrix.
     #[must_use]
     pub fn transformed(self, matrix: DMat4) -> Self {
         let normals = normal_matrix(matrix);
+        // What mirrors turns cross products, of which the bitangent is one.
+        let side = if matrix.determinant() < 0.0 { -1.0 } else { 1.0 };
         self.map(|vertex| {
             vertex.position = matrix.transform_point3(vertex.position);
             vertex.normal = (normals * vertex.normal).normalize_or_zero();
             vertex.tangent = matrix
                 .transform_vector3(vertex.tangent.truncate())
                 .normalize_or_zero()
-                .extend(vertex.tangent.w);
+                .extend(side * vertex.tangent.w);
         })
     }
 

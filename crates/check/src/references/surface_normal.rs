@@ -1,8 +1,8 @@
 //! Sources: Newcastle University, tutorial 11 (face normals); Blinn, 1978, and glTF 2.0 (normal
-//! maps with the bitangent's sign); Hill, 2012 (blending).
+//! maps and tangents with the bitangent's sign); Hill, 2012 (blending).
 
 use super::{CallArguments, Expected, ReferenceEntry};
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "surface::normal",
@@ -17,6 +17,7 @@ pub const REFERENCES: ReferenceEntry = ReferenceEntry {
         ("spheremap_decode", |a| from_spheremap(a.vec2()).into()),
         ("blend_udn", |a| slopes(a, |_| 1.0)),
         ("blend_whiteout", |a| slopes(a, |detail| detail.z)),
+        ("world_tangent", world_tangent),
     ],
 };
 
@@ -62,4 +63,16 @@ fn from_spheremap(e: DVec2) -> DVec3 {
     let radius = (2.0 * (e - 0.5).length()).min(1.0);
     let angle = 2.0 * radius.asin();
     ((e - 0.5).normalize_or_zero() * angle.sin()).extend(angle.cos())
+}
+
+/// The tangent, moved as a difference of two points is. The sign is the one with which the normal and
+/// the tangent in the world give the bitangent that is moved so too.
+fn world_tangent(a: &mut CallArguments<'_>) -> Expected {
+    let (tangent, moved) = (a.vec4(), DMat3::from_mat4(a.mat4()));
+    let along = if tangent.truncate() == DVec3::ZERO { DVec3::X } else { tangent.truncate() };
+    let normal = along.any_orthogonal_vector();
+    let bitangent = moved * normal.cross(along);
+    let in_world = (moved.inverse().transpose() * normal).cross(moved * along);
+    let side = if in_world.dot(bitangent) < 0.0 { -1.0 } else { 1.0 };
+    (moved * tangent.truncate()).extend(side * tangent.w).into()
 }
