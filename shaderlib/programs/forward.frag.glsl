@@ -281,11 +281,18 @@ vec3 shade(
 #if TWO_SIDED
     surface.normal = flip_if_back(surface.normal, front);
 #endif
+#if TWO_SIDED && (NORMAL_MAP || ANISOTROPY)
+    // Behind, the normal that a map bends is the opposite of that in front, as in Khronos Group's glTF
+    // Sample Renderer: the tangent and, by its sign, the bitangent turn with the normal.
+    vec4 tangent = front ? in_tangent : -in_tangent;
+#elif NORMAL_MAP || ANISOTROPY
+    vec4 tangent = in_tangent;
+#endif
 #if CLEARCOAT
     vec3 coat_normal = surface.normal;
 #endif
 #if NORMAL_MAP
-    surface.normal = perturb_normal(surface.normal, in_tangent, texture(sampler2D(normal_map, map_sampler), in_uv).xyz);
+    surface.normal = perturb_normal(surface.normal, tangent, texture(sampler2D(normal_map, map_sampler), in_uv).xyz);
 #endif
 #if SPECULAR != SPECULAR_NONE || DIFFUSE == DIFFUSE_OREN_NAYAR || AMBIENT == AMBIENT_IBL
     surface.view = towards_viewer(in_position);
@@ -327,7 +334,7 @@ vec3 shade(
     surface.layered = layered(base, surface.material.roughness, surface.normal, surface.view, own);
 #endif
 #if ANISOTROPY
-    surface.layered = brushed(surface.layered, in_tangent);
+    surface.layered = brushed(surface.layered, tangent);
 #endif
 #if CLEARCOAT
     surface.layered = coated(surface.layered, coat_normal);

@@ -82,8 +82,14 @@ void main() {
 #if TWO_SIDED
     normal = flip_if_back(normal, gl_FrontFacing);
 #endif
+#if TWO_SIDED && NORMAL_MAP
+    // Behind, the tangent and, by its sign, the bitangent turn with the normal, as in `forward`.
+    vec4 tangent = gl_FrontFacing ? in_tangent : -in_tangent;
+#elif NORMAL_MAP
+    vec4 tangent = in_tangent;
+#endif
 #if NORMAL_MAP
-    normal = perturb_normal(normal, in_tangent, texture(sampler2D(normal_map, map_sampler), in_uv).xyz);
+    normal = perturb_normal(normal, tangent, texture(sampler2D(normal_map, map_sampler), in_uv).xyz);
 #endif
 #if TWO_SIDED
     float material = float(material_index(int(in_material), gl_FrontFacing));

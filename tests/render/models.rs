@@ -3,6 +3,7 @@
 mod coordinates;
 mod layers;
 mod maps;
+mod sides;
 mod wrong;
 
 use std::fs;
@@ -32,6 +33,7 @@ pub fn tests() -> Vec<Trial> {
         .chain(coordinates::tests())
         .chain(layers::tests())
         .chain(maps::tests())
+        .chain(sides::tests())
         .chain(wrong::tests())
         .collect()
 }
