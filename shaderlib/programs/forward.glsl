@@ -122,7 +122,7 @@ layout(std140, set = 0, binding = 4) uniform Caster {
     float min_w;
     /// Subtracted from the depth that is compared.
     float bias;
-    /// How far the point is moved along its normal, in texels of the map.
+    /// How far the point is moved along its normal, to the side of the lamp, in texels of the map.
     float normal_offset;
     /// Size of a texel in scene units: everywhere for directional lights, at distance 1 for others.
     float texel;
@@ -644,7 +644,7 @@ float soft_shadow(Surface surface, ShadowUv at, float phi) {
 #endif
 
 #if SHADOW != SHADOW_NONE && SHADOW_LIGHT == SHADOW_LIGHT_DIRECTIONAL && !CASCADES
-/// The point that is looked up: off the surface, so that it does not shadow itself.
+/// The point that is looked up: off the surface on the lamp's side, so that it does not shadow itself.
 vec3 receiver(Surface surface, Light light) {
     return normal_offset(surface.position, surface.normal, -light.axis, caster.texel, caster.normal_offset);
 }

@@ -36,15 +36,18 @@ float slope_bias(float n_dot_l, float b, float limit) {
     return rise / n_dot_l;
 }
 
-/// The point moved out of the surface, more where light grazes it.
+/// The point moved out of the surface towards the light, more where light grazes it.
+///
+/// Light from behind moves the point out of the back, so that a leaf through which a lamp shines does not shadow itself.
 ///
 /// Parameters: `p` the lit point, scene units; `n`, `l` unit, the space of `p`, `l` away from the surface; `texel` size of the map's texel at the point, scene units; `scale` texels to move at grazing light, at least 0.
-/// Returns: `p + n*scale*texel*sin(n, l)`, scene units, for `shadow_coord`.
-/// Source: Holbert, "Saying Goodbye to Shadow Acne", Game Developers Conference, 2011.
-/// Edges: `p` itself where the light is straight above, where `n` or `l` is zero, and where `texel` or `scale` is 0; a negative product of both moves the point into the surface.
-/// Error model: absolute 2^-22*(|p| + scale*texel); the sine is the length of a cross product.
+/// Returns: `p + n*sign(n.l)*scale*texel*sin(n, l)`, scene units, for `shadow_coord`.
+/// Source: Holbert, "Saying Goodbye to Shadow Acne", Game Developers Conference, 2011; the sign as in Unity Technologies, High Definition Render Pipeline, 2019.
+/// Edges: `p` itself where the light is straight above or below, where `n` or `l` is zero, and where `texel` or `scale` is 0; along `n` where `l` is at right angles to it; a negative product of both moves the point away from the light.
+/// Error model: absolute 2^-22*(|p| + scale*texel); the sine is the length of a cross product; either side where n.l is 0 but for rounding.
 vec3 normal_offset(vec3 p, vec3 n, vec3 l, float texel, float scale) {
-    return p + n * (scale * texel * min(length(cross(n, l)), 1.0));
+    float out_ = scale * texel * min(length(cross(n, l)), 1.0);
+    return p + n * (dot(n, l) < 0.0 ? -out_ : out_);
 }
 
 /// The slope of the receiver's depth over the map, from screen-space derivatives.

@@ -12,11 +12,12 @@ const FRONT: &str = "0,0,5.5,0,0,0";
 const BACK: &str = "0,0,-5.5,0,0,0";
 
 pub fn tests() -> impl Iterator<Item = Trial> {
-    let cases: [(_, fn() -> _); 4] = [
+    let cases: [(_, fn() -> _); 5] = [
         ("bent_behind", bent_behind),
         ("brushed_behind", brushed_behind),
         ("bent_when_mirrored", bent_when_mirrored),
         ("bent_by_tangents_that_are_mirrored", bent_by_given_tangents),
+        ("leaf_is_not_its_own_shadow", leaf_is_lit),
     ];
     cases.into_iter().map(|(name, run)| Trial::test(format!("render/model/side/{name}"), run))
 }
@@ -55,7 +56,11 @@ fn light_from(document: &mut Value, to: [f64; 3]) {
 
 /// The light in the middle of the picture, without that of the surroundings.
 fn seen(document: &Value, buffer: &[u8], camera: &str) -> Result<f64, Failed> {
-    let alone = ["--camera", camera, "--set", "ambient=none,shadow=none,shadow_light=spot"];
+    seen_with(document, buffer, camera, "shadow=none,shadow_light=spot")
+}
+
+fn seen_with(document: &Value, buffer: &[u8], camera: &str, set: &str) -> Result<f64, Failed> {
+    let alone = ["--camera", camera, "--set", "ambient=none", "--set", set];
     let (picture, _) = drawn(&glb(document, buffer), &alone)?;
     Ok(linear_from_srgb(f64::from(pixel(&picture, 0.5, 0.5)[0]) / 255.0))
 }
@@ -128,4 +133,25 @@ fn brushed_behind() -> Result<(), Failed> {
     let across = light(FRONT, [0.4, -0.4, 0.8])?;
     demand((front - across).abs() > 0.1, || format!("{front} and {across} do not differ"))?;
     demand((front - back).abs() < 0.01, || format!("front {front}, back {back}"))
+}
+
+/// A leaf that scatters all light to its other side has half of a lamp's light at 60 degrees from
+/// behind, and casts no shadow onto itself.
+fn leaf_is_lit() -> Result<(), Failed> {
+    let (mut document, buffer) = square(&[]);
+    document["materials"] = json!([{
+        "doubleSided": true,
+        "pbrMetallicRoughness": { "metallicFactor": 0.0 },
+        "extensions": {
+            "KHR_materials_specular": { "specularFactor": 0.0 },
+            "KHR_materials_diffuse_transmission": { "diffuseTransmissionFactor": 1.0 },
+        },
+    }]);
+    light_from(&mut document, [0.75_f64.sqrt(), 0.0, -0.5]);
+    for shadow in ["hard", "pcf_3x3", "pcf_vogel"] {
+        let set = format!("shadow={shadow},shadow_light=directional");
+        let found = seen_with(&document, &buffer, "0.5,0.2,4,0,0,0", &set)?;
+        demand_light(found, 0.5, shadow)?;
+    }
+    Ok(())
 }

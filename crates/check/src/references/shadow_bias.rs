@@ -22,10 +22,12 @@ fn slope(cosine: f64, b: f64, limit: f64) -> f64 {
     if cosine > 0.0 { (b * cosine.min(1.0).acos().tan()).min(limit) } else { limit }
 }
 
-/// The point moved along the normal, by the sine of the angle to the light.
+/// The point moved along the normal of the side that the light is on, by the sine of its angle to the
+/// light.
 fn normal_offset(a: &mut CallArguments<'_>) -> Expected {
     let (p, n, l, texel, scale) = (a.vec3(), a.vec3(), a.vec3(), a.f64(), a.f64());
-    (p + n * (scale * texel * n.cross(l).length())).into()
+    let side = if n.dot(l) < 0.0 { -n } else { n };
+    (p + side * (scale * texel * n.cross(l).length())).into()
 }
 
 /// The gradient g with dot(g, duv_dx) = dz.x and dot(g, duv_dy) = dz.y.
