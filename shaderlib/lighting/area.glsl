@@ -46,29 +46,54 @@ vec3 any_tangent(vec3 n) {
 ///
 /// Parameters: `n`, `v` unit, one space, `v` away from the surface; `p` the lit point, anywhere in that space, scene units; `minv` inverse of the lobe's matrix in the frame of `n` and `v`, as from `ltc_matrix`, with a positive determinant; `quad` corners of a plane convex quadrilateral, the space of `p`: it shines to the side that sees them counter-clockwise.
 /// Returns: the integral, in [0, 1] up to rounding. Multiply it by the light's radiance and the lobe's albedo to get the reflected radiance.
-/// Source: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016; the polygon is cut exactly at the horizon.
-/// Edges: 0 from behind the light, below the horizon, for a `quad` without area, and where `n` or `minv` is zero; the frame's azimuth is any where `v` is along `n` or zero.
+/// Source: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016; the polygon is cut exactly, at the horizon of the surface and at that of the lobe, which an oblique lobe has below the former.
+/// Edges: 0 from behind the light and in its plane, below either horizon, for a `quad` without area, and where `n` or `minv` is zero; the frame's azimuth is any where `v` is along `n` or zero.
 /// Error model: absolute 2^-17 for a light that is as large as it is far away; differences of corners and `p` cancel for a point far from the origin.
 float ltc_rect(vec3 n, vec3 v, vec3 p, mat3 minv, vec3 quad[4]) {
+    vec3 face = cross(quad[2] - quad[0], quad[3] - quad[1]);
+    if (!(dot(face, p - quad[0]) > 0.0)) {
+        return 0.0;
+    }
     vec3 t1 = safe_normalize(v - n * dot(v, n), any_tangent(n));
     vec3 t2 = cross(n, t1);
     vec3 corners[4] = quad;
+    vec4 heights = vec4(0.0);
     for (int i = 0; i < 4; i++) {
         vec3 q = corners[i] - p;
-        corners[i] = minv * vec3(dot(t1, q), dot(t2, q), dot(n, q));
+        heights[i] = dot(n, q);
+        corners[i] = minv * vec3(dot(t1, q), dot(t2, q), heights[i]);
     }
     float sum = 0.0;
-    // Where the outline goes below the horizon, and where it comes back: at most once each.
+    // Where the outline goes below the horizon of the surface, and where it comes back: at most once
+    // each. The same for that of the lobe.
+    vec3 sets = vec3(0.0);
+    vec3 rises = vec3(0.0);
     vec3 leaves = vec3(0.0);
     vec3 enters = vec3(0.0);
-    for (int i = 0; i < 4; i++) {
-        vec3 tail = corners[i];
-        vec3 head = corners[(i + 1) % 4];
-        vec3 start = tail;
-        vec3 end = head;
-        if ((tail.z > 0.0) != (head.z > 0.0)) {
-            vec3 cut = tail + (head - tail) * (tail.z / (tail.z - head.z));
-            if (tail.z > 0.0) {
+    for (int i = 0; i < 5; i++) {
+        // The last edge joins what the surface cut.
+        vec3 start = sets;
+        vec3 end = rises;
+        if (i < 4) {
+            float here = heights[i];
+            float next = heights[(i + 1) % 4];
+            start = here > 0.0 ? corners[i] : vec3(0.0);
+            end = next > 0.0 ? corners[(i + 1) % 4] : vec3(0.0);
+            if ((here > 0.0) != (next > 0.0)) {
+                vec3 cut = corners[i] + (corners[(i + 1) % 4] - corners[i]) * (here / (here - next));
+                if (here > 0.0) {
+                    end = cut;
+                    sets = cut;
+                } else {
+                    start = cut;
+                    rises = cut;
+                }
+            }
+        }
+        bool is_above = start.z > 0.0 || end.z > 0.0;
+        if ((start.z > 0.0) != (end.z > 0.0)) {
+            vec3 cut = start + (end - start) * (start.z / (start.z - end.z));
+            if (start.z > 0.0) {
                 end = vec3(cut.xy, 0.0);
                 leaves = end;
             } else {
@@ -76,7 +101,7 @@ float ltc_rect(vec3 n, vec3 v, vec3 p, mat3 minv, vec3 quad[4]) {
                 enters = start;
             }
         }
-        if (tail.z > 0.0 || head.z > 0.0) {
+        if (is_above) {
             sum += ltc_edge(safe_normalize(start, vec3(0.0)), safe_normalize(end, vec3(0.0))).z;
         }
     }
@@ -213,17 +238,38 @@ float area_energy(float alpha, float wide) {
 /// Parameters: `n`, `v` unit, one space, `v` away from the surface; `p` the lit point, anywhere in that space, scene units; `minv` as for `ltc_rect`; `center`, `ex`, `ey` centre and half axes of the ellipse, the space of `p`: it shines to the side to which the cross product of its axes points.
 /// Returns: the integral, in [0, 1] up to rounding. Multiply it by the light's radiance and the lobe's albedo to get the reflected radiance.
 /// Source: Heitz, Hill, "Real-Time Line- and Disk-Light Shading with Linearly Transformed Cosines", SIGGRAPH, 2017: `L1*L2/sqrt((1 + L1^2)*(1 + L2^2))` with the half axes of the cone of directions, whose largest eigenvalue is found here by Newton's method.
-/// Edges: 0 from behind the light and below the horizon, for an ellipse without area, so where `ex` or `ey` is zero, where `center` is at `p`, and where `n` or `minv` is zero; the frame's azimuth is any where `v` is along `n` or zero; where the horizon cuts the light, a sphere of the same form factor stands for it.
-/// Error model: absolute 2^-18 for a light that is as large as it is far away, beside what the sphere is off at the horizon.
+/// Edges: 0 from behind the light and below either horizon, for an ellipse without area, so where `ex` or `ey` is zero, where `center` is at `p`, and where `n` or `minv` is zero; the frame's azimuth is any where `v` is along `n` or zero; where the horizon of the surface cuts the light, an ellipse of the same area and height as what is above stands for that, and where that of the lobe does, a sphere of the same form factor.
+/// Error model: absolute 2^-18 for a light that is as large as it is far away, beside what both are off at the horizons, up to 0.03.
 float ltc_disk(vec3 n, vec3 v, vec3 p, mat3 minv, vec3 center, vec3 ex, vec3 ey) {
     vec3 t1 = safe_normalize(v - n * dot(v, n), any_tangent(n));
     vec3 t2 = cross(n, t1);
     vec3 q = center - p;
+    vec3 rising = ex;
+    vec3 level = ey;
+    // Of the half axes, one rises most above the horizon of the surface, and one not at all.
+    vec2 slope = vec2(dot(n, ex), dot(n, ey));
+    float reach = length(slope);
+    float height = dot(n, q);
+    if (!(height > -reach)) {
+        return 0.0;
+    }
+    if (height < reach) {
+        // The part above the horizon is a segment, whose place an ellipse of its height and its area takes.
+        float edge = -height / reach;
+        float half_height = max(0.5 - 0.5 * edge, 1e-6);
+        float half_chord = sqrt(max(1.0 - edge * edge, 0.0));
+        float area = atan(half_chord, edge) - edge * half_chord;
+        vec2 up = slope / reach;
+        rising = ex * up.x + ey * up.y;
+        level = (ey * up.x - ex * up.y) * (area * 0.31830989 / half_height);
+        q += rising * (1.0 - half_height);
+        rising *= half_height;
+    }
     vec3 far = minv * vec3(dot(t1, q), dot(t2, q), dot(n, q));
     float scale = 1.0 / max(length(far), 1e-18);
     vec3 c = far * scale;
-    vec3 a = minv * vec3(dot(t1, ex), dot(t2, ex), dot(n, ex)) * scale;
-    vec3 b = minv * vec3(dot(t1, ey), dot(t2, ey), dot(n, ey)) * scale;
+    vec3 a = minv * vec3(dot(t1, rising), dot(t2, rising), dot(n, rising)) * scale;
+    vec3 b = minv * vec3(dot(t1, level), dot(t2, level), dot(n, level)) * scale;
     vec3 ab = cross(a, b);
     float volume = dot(c, ab);
     if (!(volume < 0.0)) {
@@ -260,7 +306,16 @@ float ltc_line(vec3 n, vec3 v, vec3 p, mat3 minv, vec3 a, vec3 b, float radius) 
     vec3 t2 = cross(n, t1);
     vec3 qa = vec3(dot(t1, a - p), dot(t2, a - p), dot(n, a - p));
     vec3 qb = vec3(dot(t1, b - p), dot(t2, b - p), dot(n, b - p));
+    if (!(qa.z > 0.0 || qb.z > 0.0)) {
+        return 0.0;
+    }
     vec3 across = safe_normalize(cross(qa, qb), vec3(0.0));
+    if (qa.z < 0.0) {
+        qa = qa + (qb - qa) * (qa.z / (qa.z - qb.z));
+    }
+    if (qb.z < 0.0) {
+        qb = qb + (qa - qb) * (qb.z / (qb.z - qa.z));
+    }
     vec3 head = minv * qa;
     vec3 tail = minv * qb;
     if (!(head.z > 0.0 || tail.z > 0.0) || dot(across, across) == 0.0) {

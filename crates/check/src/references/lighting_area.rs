@@ -40,26 +40,39 @@ fn any_tangent(n: DVec3) -> DVec3 {
     n.cross(axis).try_normalize().unwrap_or(DVec3::X)
 }
 
-/// The polygon cut at the horizon by Sutherland and Hodgman, then the sum of its edges.
+/// The integral over a quadrilateral.
 fn ltc_rect(a: &mut CallArguments<'_>) -> Expected {
     let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
-    let t1 = (v - n * v.dot(n)).try_normalize().unwrap_or(any_tangent(n));
-    let frame = DMat3::from_cols(t1, n.cross(t1), n).transpose();
-    let corners = [(); 4].map(|()| minv * (frame * (a.vec3() - p)));
-    let mut above: Vec<DVec3> = Vec::new();
-    for (index, &corner) in corners.iter().enumerate() {
-        let next = corners[(index + 1) % 4];
-        if corner.z >= 0.0 {
-            above.push(corner);
-        }
-        if (corner.z > 0.0 && next.z < 0.0) || (corner.z < 0.0 && next.z > 0.0) {
-            above.push(corner.lerp(next, corner.z / (corner.z - next.z)));
-        }
-    }
-    let unit: Vec<DVec3> = above.iter().map(|corner| corner.normalize_or_zero()).collect();
+    let frame = frame_of(n, v);
+    let corners: Vec<DVec3> = (0..4).map(|_| frame * (a.vec3() - p)).collect();
+    lobe_integral(&corners, minv).into()
+}
+
+/// The integral of a transformed cosine over a convex polygon of the frame of the normal. Below the
+/// horizon of the surface there is no light, and below that of the lobe the lobe is 0, so the polygon
+/// is cut at both. Of the rest, each edge has its part (Lambert).
+fn lobe_integral(corners: &[DVec3], minv: DMat3) -> f64 {
+    let transformed: Vec<DVec3> = above(corners).into_iter().map(|corner| minv * corner).collect();
+    let unit: Vec<DVec3> =
+        above(&transformed).into_iter().map(|corner| corner.normalize_or_zero()).collect();
     let around = unit.iter().zip(unit.iter().cycle().skip(1));
     let sum: f64 = around.map(|(a, b)| edge(*a, *b).z).sum();
-    (-sum).clamp(0.0, 1.0).into()
+    (-sum).clamp(0.0, 1.0)
+}
+
+/// The part of a polygon with a positive z, by Sutherland and Hodgman.
+fn above(corners: &[DVec3]) -> Vec<DVec3> {
+    let mut found = Vec::new();
+    for (index, &corner) in corners.iter().enumerate() {
+        let next = corners[(index + 1) % corners.len()];
+        if corner.z >= 0.0 {
+            found.push(corner);
+        }
+        if (corner.z > 0.0 && next.z < 0.0) || (corner.z < 0.0 && next.z > 0.0) {
+            found.push(corner.lerp(next, corner.z / (corner.z - next.z)));
+        }
+    }
+    found
 }
 
 /// Maps [0, 1] to the range between the centres of the first and the last of 64 texels.
@@ -151,32 +164,37 @@ fn frame_of(n: DVec3, v: DVec3) -> DMat3 {
     DMat3::from_cols(t1, n.cross(t1), n).transpose()
 }
 
-/// The vector irradiance of the transformed ellipse, as an integral over its outline, which
-/// converges fast. The result is for a sphere with the same vector irradiance, cut at the horizon.
+/// The integral over a polygon of so many corners on the ellipse that it is one for f32.
 fn ltc_disk(a: &mut CallArguments<'_>) -> Expected {
+    const CORNERS: u32 = 4096;
     let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
-    let inside = minv * frame_of(n, v);
-    let (c, x, y) = (inside * (a.vec3() - p), inside * a.vec3(), inside * a.vec3());
+    let frame = frame_of(n, v);
+    let (c, x, y) = (frame * (a.vec3() - p), frame * a.vec3(), frame * a.vec3());
     if c.dot(x.cross(y)) >= 0.0 {
         return 0.0.into();
     }
-    const STEPS: u32 = 4096;
-    let step = |index: u32| {
-        let (sine, cosine) = (2.0 * PI * f64::from(index) / f64::from(STEPS)).sin_cos();
-        let at = c + x * cosine + y * sine;
-        at.cross(y * cosine - x * sine) / at.length_squared()
+    // Corners as far outside as the middles of the edges are inside: the area is that of the ellipse.
+    let turn = 2.0 * PI / f64::from(CORNERS);
+    let reach = (turn / turn.sin()).sqrt();
+    let corner = |index| {
+        let (sine, cosine) = (turn * f64::from(index)).sin_cos();
+        c + (x * cosine + y * sine) * reach
     };
-    let light = -(0..STEPS).map(step).sum::<DVec3>() / f64::from(STEPS);
-    (sphere(light.normalize_or_zero().z, light.length()) / PI).into()
+    let corners: Vec<DVec3> = (0..CORNERS).map(corner).collect();
+    lobe_integral(&corners, minv).into()
 }
 
-/// The integral of the transformed lobe along the line. Each point has the solid angle of a strip
-/// as wide as the diameter.
+/// The integral of the transformed lobe along the part of the line that is above the horizon of the
+/// surface. Each point has the solid angle of a strip as wide as the diameter.
 fn ltc_line(a: &mut CallArguments<'_>) -> Expected {
     let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
     let frame = frame_of(n, v);
     let (head, tail) = (frame * (a.vec3() - p), frame * (a.vec3() - p));
     let radius = a.f64().max(0.0);
+    let [head, tail] = match above(&[head, tail])[..] {
+        [head, tail] | [head, tail, _] => [head, tail],
+        _ => return 0.0.into(),
+    };
     const STEPS: u32 = 4096;
     let step = |index: u32| {
         let at = head.lerp(tail, (f64::from(index) + 0.5) / f64::from(STEPS));
