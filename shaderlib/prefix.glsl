@@ -10,6 +10,7 @@
 
 #define Accum lamplight_Accum
 #define ComplexIor lamplight_ComplexIor
+#define LEAST_ALPHA lamplight_LEAST_ALPHA
 #define LIGHT_DIRECTIONAL lamplight_LIGHT_DIRECTIONAL
 #define LIGHT_OFF lamplight_LIGHT_OFF
 #define LIGHT_POINT lamplight_LIGHT_POINT
@@ -307,6 +308,7 @@
 
 #undef Accum
 #undef ComplexIor
+#undef LEAST_ALPHA
 #undef LIGHT_DIRECTIONAL
 #undef LIGHT_OFF
 #undef LIGHT_POINT

@@ -108,6 +108,11 @@ float blinn_phong_normalized(vec3 n, vec3 l, vec3 v, float s) {
     return (max(s, 0.0) + 8.0) * 0.039788736 * blinn_phong(n, l, v, s);
 }
 
+/// The least alpha of highlights: the square of a perceptual roughness of 0.045.
+///
+/// With less, the highlight of a lamp without a size is smaller than a pixel, and at 0 it is nowhere. The programs have it (Guy, Agopian, "Physically Based Rendering in Filament", 2018, section 4.8.3.3); functions do not.
+const float LEAST_ALPHA = 0.002025;
+
 /// The GGX distribution of microfacet normals, in the form that stays accurate for small alpha.
 ///
 /// `1 - nh^2` loses every digit near the mirror direction; the squared length of n x h does not.

@@ -14,6 +14,9 @@
 #ifndef LAMPLIGHT_PROGRAMS_AREAS_GLSL
 #define LAMPLIGHT_PROGRAMS_AREAS_GLSL
 
+#if AREA == AREA_SPHERE || AREA == AREA_TUBE
+#include "../brdf/specular.glsl"
+#endif
 #if AREA == AREA_RECTANGLE || AREA == AREA_SPHERE || AREA == AREA_TUBE
 #include "../lighting/area.glsl"
 #endif
@@ -108,7 +111,7 @@ float area_share(Area extent, vec3 normal, vec3 position, vec3 middle) {
 Seen seen_lamp(Area extent, vec3 normal, vec3 view, vec3 position, vec3 middle, float roughness) {
     vec3 offset = middle - position;
     vec3 mirrored = reflect(-view, normal);
-    float alpha = roughness * roughness;
+    float alpha = max(roughness * roughness, LEAST_ALPHA);
     float d = length(offset);
     float round = area_energy(alpha, area_alpha(alpha, extent.radius, d));
 #if AREA == AREA_SPHERE

@@ -396,9 +396,10 @@ vec3 ggx(Surface surface, vec3 l) {
     vec3 n = surface.normal;
     vec3 h = safe_normalize(l + surface.view, n);
     vec3 n_cross_h = cross(n, h);
-    float alpha = surface.material.roughness * surface.material.roughness;
+    float alpha = max(surface.material.roughness * surface.material.roughness, LEAST_ALPHA);
     float nl = clamp(dot(n, l), 0.0, 1.0);
-    float nv = clamp(dot(n, surface.view), 0.0, 1.0);
+    // As in `programs/layers`: the limit just inside of outlines, not the 0 behind them.
+    float nv = clamp(abs(dot(n, surface.view)), 1e-4, 1.0);
     float lobe = d_ggx(clamp(dot(n, h), 0.0, 1.0), dot(n_cross_h, n_cross_h), alpha) * v_smith_ggx(nv, nl, alpha);
     return nl * lobe * f_schlick(surface.material.specular, 1.0, dot(surface.view, h));
 }

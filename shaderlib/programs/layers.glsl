@@ -7,7 +7,8 @@
 //!
 //! Light is in the unit of `forward`: a lamp of colour 1 gives a white matt surface that faces it
 //! the colour 1, and so do surroundings of radiance 1. So a lobe is multiplied by pi. Highlights of
-//! rough facets are scaled up by what single scattering loses (`energy_compensation`).
+//! rough facets are scaled up by what single scattering loses (`energy_compensation`). Highlights are
+//! never narrower than those of `LEAST_ALPHA`; what is mirrored of the surroundings is.
 //!
 //! Made from `layers.wesl` by `cargo xtask docs`: edit that, not this file.
 
@@ -74,11 +75,11 @@ layout(std140, set = 1, binding = 5) uniform Layers {
     float iridescence;
     /// `iridescence`: index of refraction of the film.
     float iridescence_ior;
-    /// `iridescence`: thickness of the film, nanometres.
+    /// `iridescence`: thickness of the film, nanometres; without one, there is no film.
     float iridescence_thickness;
     /// `transmission`: transmissionFactor, [0, 1].
     float transmission;
-    /// `volume`: thicknessFactor, scene units.
+    /// `volume`: thicknessFactor, scene units; 0 for a thin surface.
     float thickness;
     /// `dispersion`: 20 over the Abbe number.
     float dispersion;
@@ -231,17 +232,29 @@ Factors plain_factors() {
     return own;
 }
 
+/// The cosine towards the viewer, without a sign. A normal that is bent or interpolated points away from
+/// the viewer just inside of outlines, where the surface is seen nevertheless: Khronos Group, glTF 2.0,
+/// appendix B, which has `|n.v|`. At 0 the visibility of facets would be 0, and its limit is not.
+float seen_cosine(vec3 normal, vec3 view) {
+    return clamp(abs(dot(normal, view)), 1e-4, 1.0);
+}
+
 /// The surface at a point.
 Layered layered(vec3 base, float roughness, vec3 normal, vec3 view, Factors own) {
     Layered at = zero_layered();
     at.own = own;
     at.normal = normal;
     at.view = view;
-    at.nv = clamp(dot(normal, view), 0.0, 1.0);
+    at.nv = seen_cosine(normal, view);
     at.base = base;
     at.roughness = clamp(roughness, 0.0, 1.0);
     at.f0 = specular_f0(layers.ior, 1.0, at.own.specular_color);
     at.dfg = dfg_approx(at.nv, at.roughness);
+#if IRIDESCENCE
+    // Schlick's form lets a film without thickness reflect at grazing angles, so it is left out, as in
+    // Khronos Group's glTF Sample Renderer.
+    at.own.iridescence = own.iridescence_thickness > 0.0 ? own.iridescence : 0.0;
+#endif
 #if SHEEN
     at.sheen_view = sheen_albedo(at.nv, at.own.sheen_roughness * at.own.sheen_roughness);
 #endif
@@ -255,7 +268,7 @@ Layered layered(vec3 base, float roughness, vec3 normal, vec3 view, Factors own)
 /// The surface, brushed along its tangent, which has the sign of the bitangent in `w`.
 Layered brushed(Layered surface, vec4 tangent) {
     Layered at = surface;
-    at.alphas = alpha_aniso(at.roughness * at.roughness, at.own.anisotropy);
+    at.alphas = alpha_aniso(max(at.roughness * at.roughness, LEAST_ALPHA), at.own.anisotropy);
     // The isotropic surface whose facets are as wide.
     at.dfg = dfg_approx(at.nv, sqrt(sqrt(at.alphas.x * at.alphas.y)));
     vec3 along = safe_normalize(tangent.xyz - at.normal * dot(at.normal, tangent.xyz), vec3(0.0));
@@ -270,7 +283,7 @@ Layered brushed(Layered surface, vec4 tangent) {
 /// The surface with a coat, whose normal no texture bends.
 Layered coated(Layered surface, vec3 coat_normal) {
     Layered at = surface;
-    float cosine = clamp(dot(coat_normal, at.view), 0.0, 1.0);
+    float cosine = seen_cosine(coat_normal, at.view);
     at.coat_normal = coat_normal;
     at.coat_share = at.own.clearcoat * f_schlick(vec3(0.04), 1.0, cosine).x;
     at.coat_gain = energy_compensation(vec3(1.0), dfg_approx(cosine, at.own.clearcoat_roughness)).x;
@@ -306,10 +319,10 @@ float largest_channel(vec3 color) {
 
 /// The microfacets of a surface that reflects everything, times pi and n.l.
 float facets(vec3 normal, vec3 view, vec3 l, vec3 h, float roughness) {
-    float alpha = roughness * roughness;
+    float alpha = max(roughness * roughness, LEAST_ALPHA);
     vec3 n_cross_h = cross(normal, h);
     float nl = clamp(dot(normal, l), 0.0, 1.0);
-    float nv = clamp(dot(normal, view), 0.0, 1.0);
+    float nv = seen_cosine(normal, view);
     float d = d_ggx(clamp(dot(normal, h), 0.0, 1.0), dot(n_cross_h, n_cross_h), alpha);
     return 3.14159265 * nl * d * v_smith_ggx(nv, nl, alpha);
 }
@@ -342,7 +355,7 @@ vec3 passing_share(Layered at) {
 /// How rough the surface is for what is seen through it.
 float through_roughness(Layered at) {
 #if VOLUME
-    return transmission_roughness(at.roughness, layers.ior);
+    return at.own.thickness > 0.0 ? transmission_roughness(at.roughness, layers.ior) : at.roughness;
 #else
     return at.roughness;
 #endif
@@ -473,8 +486,14 @@ vec3 mirrored_direction(Layered at) {
 
 #if TRANSMISSION
 /// The directions that are seen through the surface in red, green and blue: columns of a matrix. A
-/// thin surface does not bend light.
+/// thin surface does not bend light. With `volume`, a thickness of 0 is a thin surface
+/// (KHR_materials_volume).
 mat3 through_directions(Layered at) {
+#if VOLUME
+    if (!(at.own.thickness > 0.0)) {
+        return mat3(-at.view, -at.view, -at.view);
+    }
+#endif
 #if !VOLUME
     return mat3(-at.view, -at.view, -at.view);
 #elif DISPERSION

@@ -1,6 +1,7 @@
 //! Models of users. The tests write binary glTF files, and `lamplight render --model` draws them.
 
 mod coordinates;
+mod edges;
 mod layers;
 mod maps;
 mod sides;
@@ -31,6 +32,7 @@ pub fn tests() -> Vec<Trial> {
     drawn
         .into_iter()
         .chain(coordinates::tests())
+        .chain(edges::tests())
         .chain(layers::tests())
         .chain(maps::tests())
         .chain(sides::tests())

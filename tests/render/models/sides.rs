@@ -40,7 +40,7 @@ const ALONG_BITANGENT: [u8; 3] = [128, 204, 230];
 
 /// A lamp of pi lux in the direction `to`, in the place of all others of the document. It gives a
 /// white matt surface that faces it the colour 1.
-fn light_from(document: &mut Value, to: [f64; 3]) {
+pub fn light_from(document: &mut Value, to: [f64; 3]) {
     let turn = glam::DQuat::from_rotation_arc(glam::DVec3::Z, glam::DVec3::from(to).normalize());
     document["extensionsUsed"] = json!(["KHR_lights_punctual"]);
     document["extensions"] = json!({ "KHR_lights_punctual": { "lights": [
@@ -55,7 +55,7 @@ fn light_from(document: &mut Value, to: [f64; 3]) {
 }
 
 /// The light in the middle of the picture, without that of the surroundings.
-fn seen(document: &Value, buffer: &[u8], camera: &str) -> Result<f64, Failed> {
+pub fn seen(document: &Value, buffer: &[u8], camera: &str) -> Result<f64, Failed> {
     seen_with(document, buffer, camera, "shadow=none,shadow_light=spot")
 }
 
