@@ -26,7 +26,7 @@ const uint LIGHT_SPOT = 3u;
 ///
 /// Positions and directions are all in one space of the caller's choice: the one the surface is given in.
 struct Light {
-    /// Linear colour times intensity, at least 0.
+    /// Linear colour times intensity, at least 0. In the programs 1 gives a white matt surface the colour 1: illuminance over pi, so of a lamp of `c` candelas it is `c/pi` with a falloff by the squared distance, and of a sun of `x` lux `x/pi`.
     vec3 color;
     /// `LIGHT_OFF`, `LIGHT_DIRECTIONAL`, `LIGHT_POINT` or `LIGHT_SPOT`.
     uint kind;

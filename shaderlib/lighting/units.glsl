@@ -1,5 +1,8 @@
 //! Photometric units: from the numbers on a lamp and on a camera to those of a shader.
 //!
+//! The colour of a lamp of the programs, `Light.color`, is an intensity over pi: with it, a white matt
+//! surface has the luminance that is its colour. So divide candelas and lux by pi, once.
+//!
 //! Made from `units.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_LIGHTING_UNITS_GLSL

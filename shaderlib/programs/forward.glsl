@@ -385,13 +385,13 @@ float specular_share(Surface surface, vec3 l) {
 #elif SPECULAR == SPECULAR_BLINN_PHONG
     return blinn_phong(surface.normal, l, surface.view, surface.material.shininess);
 #elif SPECULAR == SPECULAR_BLINN_PHONG_NORMALIZED
-    return blinn_phong_normalized(surface.normal, l, surface.view, surface.material.shininess);
+    return 3.14159265 * lambert(surface.normal, l) * blinn_phong_normalized(surface.normal, l, surface.view, surface.material.shininess);
 #endif
 }
 #endif
 
 #if SPECULAR == SPECULAR_GGX
-/// The microfacet highlight, times n.l.
+/// The microfacet highlight, times pi and n.l.
 vec3 ggx(Surface surface, vec3 l) {
     vec3 n = surface.normal;
     vec3 h = safe_normalize(l + surface.view, n);
@@ -401,7 +401,7 @@ vec3 ggx(Surface surface, vec3 l) {
     // As in `programs/layers`: the limit just inside of outlines, not the 0 behind them.
     float nv = clamp(abs(dot(n, surface.view)), 1e-4, 1.0);
     float lobe = d_ggx(clamp(dot(n, h), 0.0, 1.0), dot(n_cross_h, n_cross_h), alpha) * v_smith_ggx(nv, nl, alpha);
-    return nl * lobe * f_schlick(surface.material.specular, 1.0, dot(surface.view, h));
+    return 3.14159265 * nl * lobe * f_schlick(surface.material.specular, 1.0, dot(surface.view, h));
 }
 #endif
 
@@ -432,7 +432,7 @@ vec3 area_highlight(Surface surface, Light light, LightSample arriving, uint i) 
     }
 #if AREA == AREA_RECTANGLE
     vec2 dfg = dfg_approx(dot(surface.normal, surface.view), surface.material.roughness);
-    vec3 albedo = surface.material.specular * dfg.x + dfg.y;
+    vec3 albedo = 3.14159265 * (surface.material.specular * dfg.x + dfg.y);
     return albedo * reflected_rectangle(areas.items[i], surface.normal, surface.view, surface.position, light.position, surface.lobe);
 #else
     float roughness = surface.material.roughness;

@@ -14,6 +14,7 @@ pub const FORMS: &[(&str, Form)] = &[
     ("attenuation", attenuation),
     ("hemisphere", hemisphere),
     ("sh9", sh9),
+    ("highlights", highlights),
 ];
 
 /// The width and the height of a frame, in pixels.
@@ -157,4 +158,50 @@ fn sh9(bench: &Bench<'_>) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// A lamp of colour 1 is the illuminance pi, so a BRDF gives pi times itself times n.l. That of
+/// `blinn_phong_normalized` is (s + 8)/(8*pi) times the lobe of `blinn_phong`. That of `ggx` with a
+/// roughness of 1 has no direction but in its visibility: D is 1/pi, and V is 1/(2*(n.l + n.v)).
+fn highlights(bench: &Bench<'_>) -> Result<(), String> {
+    const SHININESS: f64 = 16.0;
+    let axis = DVec3::new(0.0, -0.8, -0.6);
+    let drawn = |specular: &str| {
+        let numbers: super::frames::Numbers<'_> = &[
+            ("light", "axis", &axis.to_array()),
+            ("light", "color", &[1.0; 3]),
+            ("light", "strength", &[1.0]),
+            ("material", "diffuse", &[0.0; 3]),
+            ("material", "emission", &[0.0; 3]),
+            ("material", "specular", &[1.0; 3]),
+            ("material", "shininess", &[SHININESS]),
+            ("material", "roughness", &[1.0]),
+        ];
+        let key = format!(
+            "ambient=none,lights=directional,max_lights=1,specular={specular},viewer=infinite"
+        );
+        let prepared = bench.prepared(&bench.plan(&key, "spheres", numbers)?, SIZE)?;
+        bench.fragments_of(&prepared, SIZE)
+    };
+    let (lobes, normalized) = (drawn("blinn_phong")?, drawn("blinn_phong_normalized")?);
+    let mut brightest = 0.0_f64;
+    for (lobe, found) in lobes.iter().zip(&normalized) {
+        let wanted = (SHININESS + 8.0) / 8.0 * found.normal.dot(-axis).max(0.0) * lobe.color.y;
+        close("the normalized lobe", found.color.y, wanted, 1e-4)?;
+        brightest = brightest.max(wanted);
+    }
+    if brightest < 1.0 {
+        return Err(format!("no highlight is brighter than {brightest}"));
+    }
+    // With one direction to the viewer, the sum of both cosines is linear in the normal, of which
+    // three fragments give the viewer.
+    let rough = drawn("ggx")?;
+    let lit: Vec<_> =
+        rough.iter().filter(|f| f.normal.dot(-axis) > 0.3 && f.color.y > 0.05).collect();
+    let at = |index: usize| lit.get(index * lit.len() / 3).ok_or("nothing is lit");
+    let sums = |f: &Fragment| f.normal.dot(-axis) / (2.0 * f.color.y) - f.normal.dot(-axis);
+    let three = [at(0)?, at(1)?, at(2)?];
+    let normals = glam::DMat3::from_cols_array_2d(&three.map(|f| f.normal.to_array())).transpose();
+    let viewer = normals.inverse() * DVec3::from_array(three.map(|f| sums(f)));
+    close("the length of the viewer's direction", viewer.length(), 1.0, 1e-3)
 }

@@ -4,21 +4,20 @@
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
 
-use super::sides::{light_from, seen};
+use super::sides::{light_from, seen, seen_with};
 use super::{BEFORE, add_attribute, demand, drawn, glb, square};
 
 const FRONT: &str = BEFORE[1];
 
 pub fn tests() -> impl Iterator<Item = Trial> {
-    let cases: [(_, fn() -> _); 4] = [
+    let cases: [(_, fn() -> _); 5] = [
+        ("units_of_both_models", units_agree),
         ("smooth_coat_has_a_highlight", coat_is_seen),
         ("film_without_thickness", film_is_absent),
         ("volume_without_thickness", thin_wall_is_thin),
         ("normals_beyond_the_outline", outline_is_lit),
     ];
-    cases
-        .into_iter()
-        .map(|(name, run)| Trial::test(format!("render/model/edge/{name}"), run))
+    cases.into_iter().map(|(name, run)| Trial::test(format!("render/model/edge/{name}"), run))
 }
 
 fn of_material(material: &Value) -> (Value, Vec<u8>) {
@@ -39,9 +38,7 @@ fn coat_is_seen() -> Result<(), Failed> {
         seen(&document, &buffer, FRONT)
     };
     let (with, without) = (lit(1.0)?, lit(0.0)?);
-    demand(with > 0.99 && without < 0.1, || {
-        format!("found {with}, without a coat {without}")
-    })
+    demand(with > 0.99 && without < 0.1, || format!("found {with}, without a coat {without}"))
 }
 
 /// A film of no thickness leaves what is without a film.
@@ -54,18 +51,10 @@ fn film_is_absent() -> Result<(), Failed> {
                 { "iridescenceFactor": 1.0, "iridescenceThicknessMaximum": 0.0 } },
         }));
         document["nodes"] = json!([{ "mesh": 0, "rotation": [0.0, 0.5, 0.0, 0.75_f64.sqrt()] }]);
-        drawn(
-            &glb(&document, &buffer),
-            &[&BEFORE[..], &["--set", set]].concat(),
-        )
+        drawn(&glb(&document, &buffer), &[&BEFORE[..], &["--set", set]].concat())
     };
     let ((film, _), (none, _)) = (with("iridescence=true")?, with("iridescence=false")?);
-    let most = film
-        .pixels
-        .iter()
-        .zip(&none.pixels)
-        .map(|(a, b)| a.abs_diff(*b))
-        .max();
+    let most = film.pixels.iter().zip(&none.pixels).map(|(a, b)| a.abs_diff(*b)).max();
     demand(most <= Some(1), || format!("a byte differs by {most:?}"))
 }
 
@@ -79,25 +68,14 @@ fn thin_wall_is_thin() -> Result<(), Failed> {
                 "KHR_materials_volume": { "thicknessFactor": thickness },
             },
         }));
-        let checks = [
-            "--environment",
-            "checks",
-            "--camera",
-            "3,1,4,0,0,0",
-            "--set",
-            set,
-        ];
+        let checks = ["--environment", "checks", "--camera", "3,1,4,0,0,0", "--set", set];
         drawn(&glb(&document, &buffer), &checks)
     };
     let (thin, _) = seen_through(0.0, "volume=false")?;
     let (as_volume, _) = seen_through(0.0, "volume=true")?;
     let (thick, _) = seen_through(1.0, "volume=true")?;
-    demand(thin.pixels == as_volume.pixels, || {
-        "`volume` bends light at thickness 0".to_owned()
-    })?;
-    demand(thin.pixels != thick.pixels, || {
-        "a thickness of 1 does not bend light".to_owned()
-    })
+    demand(thin.pixels == as_volume.pixels, || "`volume` bends light at thickness 0".to_owned())?;
+    demand(thin.pixels != thick.pixels, || "a thickness of 1 does not bend light".to_owned())
 }
 
 /// A normal two degrees beyond the outline reflects nearly what one just before it does.
@@ -112,8 +90,21 @@ fn outline_is_lit() -> Result<(), Failed> {
         seen(&document, &buffer, FRONT)
     };
     let (before, beyond) = (lit(89.0)?, lit(91.0)?);
-    demand(
-        before > 0.1 && (before - beyond).abs() < 0.15 * before,
-        || format!("89 degrees: {before}, 91 degrees: {beyond}"),
-    )
+    demand(before > 0.1 && (before - beyond).abs() < 0.15 * before, || {
+        format!("89 degrees: {before}, 91 degrees: {beyond}")
+    })
+}
+
+/// A white metal of roughness 1 reflects pi*D*V = 1/4 of a lamp of pi lux, straight back. With glTF's
+/// model, what facets reflect several times is added.
+fn units_agree() -> Result<(), Failed> {
+    let (mut document, buffer) = of_material(&json!({
+        "pbrMetallicRoughness": { "metallicFactor": 1.0, "roughnessFactor": 1.0 } }));
+    light_from(&mut document, [0.0, 0.0, 1.0]);
+    let lit = |set: &str| {
+        seen_with(&document, &buffer, FRONT, &format!("shadow=none,shadow_light=spot,{set}"))
+    };
+    let (plain, of_gltf) = (lit("metallic_roughness=false")?, lit("metallic_roughness=true")?);
+    demand((plain - 0.25).abs() < 0.01, || format!("found {plain}, expected 0.25"))?;
+    demand(of_gltf > 0.7 && of_gltf < 1.0, || format!("found {of_gltf} with glTF's model"))
 }

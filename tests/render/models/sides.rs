@@ -59,7 +59,7 @@ pub fn seen(document: &Value, buffer: &[u8], camera: &str) -> Result<f64, Failed
     seen_with(document, buffer, camera, "shadow=none,shadow_light=spot")
 }
 
-fn seen_with(document: &Value, buffer: &[u8], camera: &str, set: &str) -> Result<f64, Failed> {
+pub fn seen_with(document: &Value, buffer: &[u8], camera: &str, set: &str) -> Result<f64, Failed> {
     let alone = ["--camera", camera, "--set", "ambient=none", "--set", set];
     let (picture, _) = drawn(&glb(document, buffer), &alone)?;
     Ok(linear_from_srgb(f64::from(pixel(&picture, 0.5, 0.5)[0]) / 255.0))
