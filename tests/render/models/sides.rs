@@ -12,9 +12,10 @@ const FRONT: &str = "0,0,5.5,0,0,0";
 const BACK: &str = "0,0,-5.5,0,0,0";
 
 pub fn tests() -> impl Iterator<Item = Trial> {
-    let cases: [(_, fn() -> _); 5] = [
+    let cases: [(_, fn() -> _); 6] = [
         ("bent_behind", bent_behind),
         ("brushed_behind", brushed_behind),
+        ("bent_by_a_scale", bent_by_a_scale),
         ("bent_when_mirrored", bent_when_mirrored),
         ("bent_by_tangents_that_are_mirrored", bent_by_given_tangents),
         ("leaf_is_not_its_own_shadow", leaf_is_lit),
@@ -86,6 +87,19 @@ fn bent_behind() -> Result<(), Failed> {
             let found = seen(&document, &buffer, camera)?;
             demand_light(found, cosine, &format!("{texel:?} from {camera}, lamp at {to:?}"))?;
         }
+    }
+    Ok(())
+}
+
+/// `normalTexture.scale` multiplies the parts along the tangent and the bitangent.
+fn bent_by_a_scale() -> Result<(), Failed> {
+    let (mut document, buffer) = matt(ALONG_TANGENT)?;
+    for scale in [0.0_f64, 0.5, 1.0, 2.0] {
+        document["materials"][0]["normalTexture"]["scale"] = json!(scale);
+        light_from(&mut document, [0.0, 0.0, 1.0]);
+        let cosine = 0.8 / (0.6 * scale).hypot(0.8);
+        let found = seen(&document, &buffer, FRONT)?;
+        demand_light(found, cosine, &format!("scale {scale}"))?;
     }
     Ok(())
 }

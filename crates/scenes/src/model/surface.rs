@@ -376,7 +376,7 @@ pub struct ImageChannels {
     /// Whether the image is coded as sRGB.
     pub is_color: bool,
     pub coordinates: Coordinates,
-    /// The bits of the strength of the image, an `f32`; see [`ImageChannels::weakened`].
+    /// The bits of the strength of the image, an `f32`; see [`ImageChannels::scaled`].
     strength: u32,
 }
 
@@ -425,9 +425,16 @@ impl ImageChannels {
         Self { coordinates, ..self }
     }
 
-    /// A texel, mixed with 1: at strength 0 the result is 1, at strength 1 the texel.
-    pub fn weakened(&self, texel: DVec4) -> DVec4 {
-        DVec4::ONE.lerp(texel, f32::from_bits(self.strength).clamp(0.0, 1.0).into())
+    /// A texel, mixed with 1: at strength 0 the result is 1, at strength 1 the texel. That of a normal
+    /// map leans by a factor more, and is shortened if it does not fit into a texel.
+    pub fn scaled(&self, texel: DVec4) -> DVec4 {
+        let strength = f64::from(f32::from_bits(self.strength));
+        if self.map != "normal_map" {
+            return DVec4::ONE.lerp(texel, strength.clamp(0.0, 1.0));
+        }
+        let scaled = (2.0 * texel - 1.0) * DVec4::new(strength, strength, 1.0, 1.0);
+        let scaled = scaled / scaled.truncate().abs().max_element().max(1.0);
+        (0.5 * scaled + 0.5).with_w(texel.w)
     }
 }
 
@@ -460,7 +467,8 @@ pub fn material_parts(
         let own = info.extension_value(TRANSFORM);
         let at = Coordinates::read(info.tex_coord(), own, &place("normalTexture"))?;
         let image = info.texture().source().index();
-        parts.push(ImageChannels::new("normal_map", image, RGB, false).at(at));
+        let part = ImageChannels::new("normal_map", image, RGB, false).at(at);
+        parts.push(ImageChannels { strength: info.scale().to_bits(), ..part });
     }
     for (info, map, channels, is_color) in factor_textures(material) {
         parts.push(known(&info, map, channels, is_color));

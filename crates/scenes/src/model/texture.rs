@@ -235,7 +235,7 @@ fn place_image(
         let at = in_texture((DVec2::new(x as f64, y as f64) + 0.5) / side as f64);
         let column = ((at.x * image.width as f64) as usize).min(image.width - 1);
         let row = ((at.y * image.height as f64) as usize).min(image.height - 1);
-        let own = part.weakened(image.texels[row * image.width + column]);
+        let own = part.scaled(image.texels[row * image.width + column]);
         let texel = &mut map.texels[(top + y) * map.width + left + x];
         for channel in part.channels {
             texel[*channel] = own[*channel];
