@@ -10,6 +10,7 @@ use super::{Arguments, Failure};
 use crate::bundle::key::{IMPLIED, has_value};
 use crate::limits::MODEL_BYTES;
 use crate::model::{self, Lacks, Model, View};
+use crate::permute::Setting;
 use crate::picture::Plan;
 use crate::picture::frame::Programs;
 use crate::scene::sets::Scene;
@@ -47,6 +48,9 @@ pub fn read_model(arguments: &Arguments) -> Result<Option<Model>, Failure> {
     Ok(Some(model))
 }
 
+/// The programs that light a model as its materials say.
+const LIT: [&str; 2] = ["forward", "deferred"];
+
 /// The permutation that shows a model. Axes that the user chose take precedence over those that the
 /// model asks for.
 pub fn model_plan(
@@ -54,16 +58,21 @@ pub fn model_plan(
     arguments: &Arguments,
     model: &Model,
 ) -> Result<Plan, Failure> {
-    let is_forward = arguments.program.as_deref().is_none_or(|program| program == "forward");
-    if !is_forward || arguments.preset.is_some() {
+    let name = arguments.program.as_deref().unwrap_or("forward");
+    let program = programs.manifest().program(name).filter(|_| LIT.contains(&name));
+    let Some(program) = program.filter(|_| arguments.preset.is_none()) else {
         return super::permutation_plan(programs, arguments);
-    }
+    };
+    let has = |axis: &str, value: &Setting| {
+        program.space.axes().iter().any(|own| own.name == axis && own.ordinal(value).is_some())
+    };
     let is_chosen = |axis: &str| arguments.set.iter().any(|(chosen, _)| chosen == axis);
     let own = model.axes.iter().chain(&model.layers);
-    let own: Vec<&str> = own
+    let own = own
         .map(String::as_str)
-        .filter(|value| axis_value(value).is_ok_and(|(axis, _)| !is_chosen(&axis)))
-        .collect();
+        .filter(|value| axis_value(value).is_ok_and(|(axis, _)| !is_chosen(&axis)));
+    let (own, lacking): (Vec<&str>, Vec<&str>) =
+        own.partition(|value| axis_value(value).is_ok_and(|(axis, value)| has(&axis, &value)));
     let is_layer = |value: &str| model.layers.iter().any(|layer| layer == value);
     // The user's choices may exclude values that the model asks for. Each step keeps fewer of
     // these, until the constraints hold.
@@ -80,12 +89,12 @@ pub fn model_plan(
         let set = set.chain(arguments.set.iter().cloned()).collect();
         let chosen = Arguments { set, ..arguments.clone() };
         if let Ok(plan) = super::permutation_plan(programs, &chosen) {
-            report_omissions(&left_out)?;
+            report_omissions(&[left_out, lacking].concat())?;
             return Ok(plan);
         }
     }
     let plan = super::permutation_plan(programs, arguments)?;
-    report_omissions(&own)?;
+    report_omissions(&[own, lacking].concat())?;
     Ok(plan)
 }
 

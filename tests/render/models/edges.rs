@@ -5,12 +5,13 @@ use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
 
 use super::sides::{light_from, seen, seen_with};
-use super::{BEFORE, add_attribute, demand, drawn, glb, square};
+use super::{BEFORE, add_attribute, demand, drawn, glb, is_near, pixel, square};
 
 const FRONT: &str = BEFORE[1];
 
 pub fn tests() -> impl Iterator<Item = Trial> {
-    let cases: [(_, fn() -> _); 5] = [
+    let cases: [(_, fn() -> _); 6] = [
+        ("deferred_has_the_materials", deferred_is_the_same),
         ("units_of_both_models", units_agree),
         ("smooth_coat_has_a_highlight", coat_is_seen),
         ("film_without_thickness", film_is_absent),
@@ -107,4 +108,17 @@ fn units_agree() -> Result<(), Failed> {
     let (plain, of_gltf) = (lit("metallic_roughness=false")?, lit("metallic_roughness=true")?);
     demand((plain - 0.25).abs() < 0.01, || format!("found {plain}, expected 0.25"))?;
     demand(of_gltf > 0.7 && of_gltf < 1.0, || format!("found {of_gltf} with glTF's model"))
+}
+
+/// `deferred` lights a model as `forward` does, without any choice of the user.
+fn deferred_is_the_same() -> Result<(), Failed> {
+    let (mut document, buffer) = of_material(&json!({
+        "pbrMetallicRoughness": { "metallicFactor": 1.0, "roughnessFactor": 1.0 } }));
+    light_from(&mut document, [0.0, 0.0, 1.0]);
+    let lit = |program: &str| {
+        drawn(&glb(&document, &buffer), &[&BEFORE[..], &["--program", program]].concat())
+    };
+    let ((one, _), (other, _)) = (lit("forward")?, lit("deferred")?);
+    let [found, expected] = [&other, &one].map(|picture| pixel(picture, 0.5, 0.5));
+    demand(is_near(found, expected, 3), || format!("deferred {found:?}, forward {expected:?}"))
 }
