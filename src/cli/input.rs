@@ -26,7 +26,7 @@ pub struct InputArguments {
     /// The source language [default: by the file's extension].
     #[arg(long, value_enum)]
     lang: Option<LanguageName>,
-    /// The stage of GLSL from standard input.
+    /// The stage of GLSL from standard input, or from a file whose name does not say it.
     #[arg(long, value_enum)]
     stage: Option<StageName>,
     /// Choose an axis's value.
@@ -270,7 +270,10 @@ impl InputArguments {
         match (self.lang, &*extension) {
             (Some(name), _) => Ok(name.into()),
             (None, _) if self.stage.is_some() => Ok(Language::Glsl),
-            (None, "glsl" | "vert" | "frag" | "comp") => Ok(Language::Glsl),
+            (None, "glsl") => Ok(Language::Glsl),
+            (None, _) if compose::glsl::named_stage(&file.to_string_lossy()).is_some() => {
+                Ok(Language::Glsl)
+            }
             (None, "wesl" | "wgsl") => Ok(Language::Wesl),
             (None, _) if file.is_dir() => Ok(Language::Wesl),
             (None, _) => Err(Failure::usage(format!(
@@ -311,7 +314,8 @@ impl InputArguments {
             MangleName::Collisions => Mangle::Collisions,
             MangleName::Underscore => Mangle::Underscore,
         };
-        Options { mangle, keep: if self.keep_all { Keep::All } else { Keep::EntryPoints } }
+        let keep = if self.keep_all { Keep::All } else { Keep::EntryPoints };
+        Options { mangle, keep, stage: self.stage.map(Stage::from) }
     }
 
     /// The settings from the command line, and the defaults of the program that the file belongs

@@ -166,6 +166,16 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// Starts the threads that share work. Where the system has no memory for their stacks, this thread
+/// does all the work: rayon would panic at its first use.
+fn start_threads() {
+    if rayon::ThreadPoolBuilder::new().build_global().is_err() {
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread();
+        // An error says that the pool is there already.
+        drop(alone.build_global());
+    }
+}
+
 fn run_arguments() -> ExitCode {
     let matches = described_command().try_get_matches();
     let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
@@ -174,6 +184,7 @@ fn run_arguments() -> ExitCode {
     };
     // Done before other threads have work: the main thread only waits for this one.
     executors::prepare_process(&cli.command.executors());
+    start_threads();
     let gpus = cli.command.gpus();
     let form = cli.color.of(cli.diagnostics);
     if !matches!(cli.command, Command::Sandbox(_)) {

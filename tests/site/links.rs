@@ -13,8 +13,18 @@ use serde_json::{Value, json};
 use super::{Opened, Outcome, PATIENCE, text, without_errors};
 
 /// The most seconds of processor time that the page itself, which cannot be used meanwhile, spends on
-/// a link.
+/// a link, on a machine that needs `FIXED_SECONDS` for `FIXED_WORK`. Slower ones get more.
 const LIMIT: f64 = 2.0;
+
+/// Work of the same amount on every machine.
+const FIXED_WORK: &str = "let sum = 0; for (let i = 0; i < 3e8; i++) sum = (sum * 31 + i) | 0; sum";
+
+/// The seconds of processor time that `FIXED_WORK` takes on an idle core of 3 GHz.
+const FIXED_SECONDS: f64 = 0.4;
+
+/// How often a link that took too long is followed again. The shortest time counts: other tests
+/// share the caches and the clock of the processor.
+const AGAIN: usize = 2;
 
 /// Within this time the page answers, also on a machine that runs other tests.
 const BUSY: Duration = Duration::from_secs(10);
@@ -156,7 +166,7 @@ pub fn links() -> Outcome {
     let mut wrong = Vec::new();
     for link in &table.link {
         let hash = link.hash()?;
-        if let Err(problem) = followed(&mut page, link, &hash) {
+        if let Err(problem) = followed_in_time(&mut page, link, &hash) {
             let reason = problem.message().unwrap_or_default();
             wrong.push(format!("{}: {reason}", link.name(&hash)));
         }
@@ -175,8 +185,34 @@ fn spent(page: &BrowserPage) -> Result<f64, Failed> {
     Ok(found.and_then(|one| one["value"].as_f64()).ok_or("no duration of tasks")?)
 }
 
-/// Opens a link, and waits until the page has answer what it should.
-fn followed(page: &mut BrowserPage, link: &Link, hash: &str) -> Outcome {
+/// How much slower this machine is, now, than the one `LIMIT` is for.
+fn slowness(page: &mut BrowserPage) -> Result<f64, Failed> {
+    let before = spent(page)?;
+    page.evaluate(FIXED_WORK, PATIENCE)?;
+    Ok(((spent(page)? - before) / FIXED_SECONDS).max(1.0))
+}
+
+fn followed_in_time(page: &mut BrowserPage, link: &Link, hash: &str) -> Outcome {
+    let mut shortest = followed(page, link, hash)?;
+    let mut allowed = LIMIT;
+    for _ in 0..AGAIN {
+        if shortest <= allowed {
+            return Ok(());
+        }
+        page.evaluate("location.hash = '#/catalogue'", PATIENCE)?;
+        page.until("document.body.dataset.ready !== undefined", PATIENCE)?;
+        shortest = shortest.min(followed(page, link, hash)?);
+        allowed = LIMIT * slowness(page)?;
+    }
+    if shortest <= allowed {
+        return Ok(());
+    }
+    Err(format!("it took the page {shortest:.1} s, and {allowed:.1} s are allowed").into())
+}
+
+/// Opens a link, and waits until the page has answered what it should. Returns the seconds of
+/// processor time of that.
+fn followed(page: &mut BrowserPage, link: &Link, hash: &str) -> Result<f64, Failed> {
     let open = format!(
         "(async () => {{
             const before = document.querySelector('main');
@@ -210,9 +246,8 @@ fn followed(page: &mut BrowserPage, link: &Link, hash: &str) -> Outcome {
         () if u128::from(answered) > BUSY.as_millis() => {
             Err(format!("answered after {answered} ms").into())
         }
-        () if spent > LIMIT => Err(format!("it took the page {spent:.1} s").into()),
         () if !failed.is_empty() => Err(format!("the page says {failed}").into()),
         () if !errors.is_empty() => Err(format!("errors: {errors}").into()),
-        () => Ok(()),
+        () => Ok(spent),
     }
 }

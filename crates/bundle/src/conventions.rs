@@ -52,11 +52,38 @@ impl Convention for BoundsChecks {
         &[("unchecked", Self::Unchecked), ("restrict", Self::Restrict)];
 }
 
+/// The clip space that the positions of a vertex shader in GLSL are in. Outputs have positions of
+/// [`ClipConvention::Wgpu`], so those of another clip space are converted. WGSL has one clip space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum SourceClip {
+    /// OpenGL's for a shader of a version below 4.50 without anything that only GLSL for Vulkan has,
+    /// else WebGPU's.
+    #[default]
+    Auto,
+    /// Depths go from -1 to 1.
+    OpenGl,
+    /// The y axis points down.
+    Vulkan,
+    /// Positions are taken as they are written.
+    WebGpu,
+}
+
+impl Convention for SourceClip {
+    const ALL: &'static [(&'static str, Self)] = &[
+        ("auto", Self::Auto),
+        ("opengl", Self::OpenGl),
+        ("vulkan", Self::Vulkan),
+        ("webgpu", Self::WebGpu),
+    ];
+}
+
 /// What is chosen for an output besides its target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct Conventions {
     /// The clip space of vertex stages.
     pub clip: ClipConvention,
+    /// The clip space of vertex shaders in GLSL. It means nothing where outputs have the API's own.
+    pub source_clip: SourceClip,
     /// Checks of indices and loops.
     pub bounds: BoundsChecks,
 }
@@ -66,6 +93,8 @@ pub struct Conventions {
 pub struct RequestedConventions {
     /// The clip space of vertex stages.
     pub clip: Option<ClipConvention>,
+    /// The clip space of vertex shaders in GLSL.
+    pub source_clip: Option<SourceClip>,
     /// Checks of indices and loops.
     pub bounds: Option<BoundsChecks>,
 }
@@ -75,6 +104,7 @@ impl RequestedConventions {
     pub fn or(self, own: Conventions) -> Conventions {
         Conventions {
             clip: self.clip.unwrap_or(own.clip),
+            source_clip: self.source_clip.unwrap_or(own.source_clip),
             bounds: self.bounds.unwrap_or(own.bounds),
         }
     }

@@ -36,7 +36,7 @@ mod usage;
 
 pub use contents::{Artifact, Axis, Contents, EntryContents, Hash, ProgramContents, Unit};
 pub use conventions::{
-    BoundsChecks, ClipConvention, Convention, Conventions, RequestedConventions,
+    BoundsChecks, ClipConvention, Convention, Conventions, RequestedConventions, SourceClip,
 };
 pub use diff::{Change, Difference, diff};
 pub use digest::{Digest, Digester};

@@ -53,6 +53,8 @@ pub struct Options {
     pub mangle: Mangle,
     /// What is written.
     pub keep: Keep,
+    /// The stage of a GLSL file, whatever its name says.
+    pub stage: Option<Stage>,
 }
 
 /// A composed text and where each part of it came from.

@@ -87,13 +87,14 @@ impl Request {
     /// What is asked for, without the shard, as one line.
     fn settings(&self) -> String {
         let Self { program, only, targets, conventions, shard: _ } = self;
-        let RequestedConventions { clip, bounds } = conventions;
+        let RequestedConventions { clip, source_clip, bounds } = conventions;
         let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
         let parts = [
             program.as_ref().map(|program| format!("program {program}")),
             only.as_ref().map(|only| format!("only {}", only.text)),
             (!names.is_empty()).then(|| format!("targets {}", names.join(","))),
             clip.map(|clip| format!("clip {clip:?}")),
+            source_clip.map(|clip| format!("source clip {clip:?}")),
             bounds.map(|bounds| format!("bounds {bounds:?}")),
         ];
         let parts: Vec<String> = parts.into_iter().flatten().collect();

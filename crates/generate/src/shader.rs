@@ -93,6 +93,7 @@ impl Root<'_> {
         let options = Options {
             mangle: self.options.mangle,
             keep: kept_items(self.graph, self.options, entry),
+            stage: self.options.stage,
         };
         let composed = compose::compose(self.graph, self.settings, &options)?;
         let lean = lean(&composed);

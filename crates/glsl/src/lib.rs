@@ -8,11 +8,14 @@
 pub mod ast;
 pub mod builtin;
 pub mod check;
+mod dialect;
 pub mod lexer;
 pub mod parse;
 pub mod tree;
 pub mod types;
 pub mod wgsl;
+
+pub use dialect::is_for_vulkan;
 
 use lamplight_diagnostic::Diagnostics;
 use lamplight_diagnostic::source::SourceId;

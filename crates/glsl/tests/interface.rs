@@ -115,7 +115,7 @@ fn bindings() -> Result<(), Failed> {
         facts.resources.iter().find(|found| found.name == name).map(|found| found.binding)
     };
     same(["a[0]", "a[2]", "b"].map(number), [Some(4), Some(6), Some(5)])?;
-    let moved = |fact: &Fact| match fact {
+    let moved = |(fact, _): &(Fact, _)| match fact {
         Fact::Binding(name, wanted, found) => Some((name.clone(), *wanted, *found)),
         _ => None,
     };
@@ -136,7 +136,8 @@ fn initial_values() -> Result<(), Failed> {
     let text = "uniform vec2 a = vec2(1.0, 2.0) * 2.0; layout(location = 0) out vec4 color; \
                 void main() { color = a.xyxy; }";
     let (_, _, facts) = read(Stage::Fragment, text)?;
-    same(facts.list, vec![Fact::Initial("a".to_owned(), vec![2.0, 4.0])])
+    let list: Vec<Fact> = facts.list.into_iter().map(|(fact, _)| fact).collect();
+    same(list, vec![Fact::Initial("a".to_owned(), vec![2.0, 4.0])])
 }
 
 /// The size by an id is an override of that id, and `gl_WorkGroupSize` names it.

@@ -55,7 +55,7 @@ fn check(name: &str, text: &str) -> Result<(), Failed> {
     for resource in &written.facts.resources {
         shown.push_str(&format!("// {resource:?}\n"));
     }
-    for fact in &written.facts.list {
+    for (fact, _) in &written.facts.list {
         shown.push_str(&format!("// {fact:?}\n"));
     }
     snapshot::check("glsl", name, &shown)?;

@@ -6,12 +6,14 @@ use std::sync::Arc;
 use super::browsers::fit_for_browsers;
 use super::{Linker, Reason};
 use lamplight_bundle::{
-    Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Language, Target, Unit,
+    Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Language, SourceClip, Target,
+    Unit,
 };
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use lamplight_emit::{self as emit, targets};
 use lamplight_files::limits::GROUP_BYTES;
+use lamplight_glsl::wgsl::Clip;
 use lamplight_validate::{
     self as validate, Validated, check_glsl, on_large_stack, validate, validate_unguarded,
 };
@@ -35,9 +37,60 @@ pub struct CompiledUnit {
 
 /// Compiles a text for every target. Every command gets the bytes that ship from here.
 ///
+/// GLSL that naga's front end does not read is translated to WGSL first.
+///
 /// # Errors
-/// What naga finds wrong with the text, at the places in its author's files.
+/// What is wrong with the text, at the places in its author's files.
 pub fn compile(
+    text: &TextForms<'_>,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<CompiledUnit, Diagnostics> {
+    let clip = positions_of(text.composed, linker.conventions);
+    if clip != Clip::Kept {
+        return compile_translated(text, clip, entry, targets, linker);
+    }
+    match compile_text(text, entry, targets, linker) {
+        Err(errors) if text.composed.language == Language::Glsl && !are_final(&errors) => {
+            compile_translated(text, clip, entry, targets, linker)
+        }
+        made => made,
+    }
+}
+
+/// The clip space that the positions of a text are converted from.
+fn positions_of(composed: &Composed, conventions: Conventions) -> Clip {
+    match conventions.clip {
+        ClipConvention::Wgpu => validate::positions_of(composed, conventions.source_clip),
+        ClipConvention::Native => Clip::Kept,
+    }
+}
+
+/// Whether a translation of the text would not change these errors.
+fn are_final(errors: &[Diagnostic]) -> bool {
+    let are_of_size = [codes::NAGA_EXHAUSTED, codes::LIMIT_EXCEEDED];
+    errors.iter().any(|error| are_of_size.contains(&error.code))
+}
+
+fn compile_translated(
+    text: &TextForms<'_>,
+    clip: Clip,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<CompiledUnit, Diagnostics> {
+    let mut wgsl = validate::glsl_as_wgsl(text.composed, clip)?;
+    let facts = std::mem::take(&mut wgsl.warnings);
+    let translated = TextForms { composed: &wgsl, lean: &wgsl };
+    let mut made = compile_text(&translated, entry, targets, linker).map_err(|errors| {
+        errors.into_iter().map(validate::of_translation).collect::<Diagnostics>()
+    })?;
+    made.warnings.splice(0..0, facts);
+    Ok(made)
+}
+
+fn compile_text(
     text: &TextForms<'_>,
     entry: &str,
     targets: &[Target],
@@ -85,7 +138,8 @@ fn try_and_validate(
 ) -> Result<Validated, Diagnostics> {
     let outputs = || {
         let targets = targets.iter().map(|target| target.name().to_owned()).collect();
-        let Conventions { clip, bounds } = linker.conventions;
+        // What naga reads is converted already.
+        let Conventions { clip, source_clip: _, bounds } = linker.conventions;
         let [clip, bounds] = [clip.name(), bounds.name()].map(str::to_owned);
         Some(validate::SandboxOutputs { entry: entry.to_owned(), targets, clip, bounds })
     };
@@ -115,6 +169,7 @@ pub fn perform_job(job: &validate::SandboxJob) {
     let text = TextForms { composed: &composed, lean: &composed };
     let conventions = Conventions {
         clip: ClipConvention::find(&outputs.clip).unwrap_or_default(),
+        source_clip: SourceClip::WebGpu,
         bounds: BoundsChecks::find(&outputs.bounds).unwrap_or_default(),
     };
     let linker = Linker::with(&targets, conventions);

@@ -186,7 +186,17 @@ pub fn lint_text(graph: &Graph, composed: &Composed) -> Diagnostics {
             let more = graph.own(validate::lint(composed, &validated, false));
             warnings.into_iter().chain(more).collect()
         }
-        Err(errors) => warnings.into_iter().chain(errors).collect(),
+        Err(errors) => {
+            let found = match composed.language {
+                Language::Wesl => errors,
+                // naga's front end reads only a part of GLSL.
+                Language::Glsl => match validate::lint_as_wgsl(composed) {
+                    Ok(found) => graph.own(found),
+                    Err(errors) => errors,
+                },
+            };
+            warnings.into_iter().chain(found).collect()
+        }
     }
 }
 

@@ -17,6 +17,7 @@ mod operands;
 mod report;
 mod sandbox;
 mod sizes;
+mod translated;
 mod uniformity;
 mod words;
 
@@ -33,6 +34,7 @@ pub use operands::{
 };
 #[doc(hidden)]
 pub use sandbox::{STAGE, SandboxJob, SandboxOutputs, try_in_sandbox};
+pub use translated::{glsl_as_wgsl, lint_as_wgsl, of_translation, positions_of, translate_glsl};
 
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationError, ValidationFlags, Validator};

@@ -247,7 +247,8 @@ fn shaders(
 
 fn options(request: &ShaderRequest) -> Options {
     let mangle = if request.underscore { Mangle::Underscore } else { Mangle::Collisions };
-    Options { mangle, keep: if request.keep_all { Keep::All } else { Keep::EntryPoints } }
+    let keep = if request.keep_all { Keep::All } else { Keep::EntryPoints };
+    Options { mangle, keep, stage: None }
 }
 
 /// The settings of a request, over the defaults of the program that the file belongs to.
@@ -318,7 +319,7 @@ fn requested_conventions(request: &ShaderRequest) -> Result<RequestedConventions
     let clip = named(&request.clip, codes::UNKNOWN_CLIP, "there is no clip space");
     let bounds =
         named::<BoundsChecks>(&request.bounds, codes::UNKNOWN_BOUNDS, "there are no checks");
-    Ok(RequestedConventions { clip: clip?, bounds: bounds? })
+    Ok(RequestedConventions { clip: clip?, source_clip: None, bounds: bounds? })
 }
 
 fn named<C: Convention>(

@@ -1,6 +1,6 @@
 //! The options for conventions of outputs.
 
-use crate::bundle::{BoundsChecks, ClipConvention, Convention, RequestedConventions};
+use crate::bundle::{BoundsChecks, ClipConvention, Convention, RequestedConventions, SourceClip};
 
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct ConventionArguments {
@@ -8,6 +8,11 @@ pub struct ConventionArguments {
     /// of the program in the manifest, or else `wgpu`].
     #[arg(long, value_name = "SPACE", value_parser = parse_convention::<ClipConvention>)]
     clip: Option<ClipConvention>,
+    /// Clip space of vertex shaders in GLSL: `opengl`, `vulkan`, `webgpu`, or `auto`, which is
+    /// `opengl` for versions below 4.50 without features of Vulkan, else `webgpu` [default: that of the program in
+    /// the manifest, or else `auto`].
+    #[arg(long, value_name = "SPACE", value_parser = parse_convention::<SourceClip>)]
+    source_clip: Option<SourceClip>,
     /// Checks: `restrict` clamps indices and coordinates and ends endless loops, `unchecked` adds
     /// nothing [default: those of the program in the manifest, or else `unchecked`].
     #[arg(long, value_name = "CHECKS", value_parser = parse_convention::<BoundsChecks>)]
@@ -16,12 +21,13 @@ pub struct ConventionArguments {
 
 impl ConventionArguments {
     pub fn chosen(self) -> RequestedConventions {
-        RequestedConventions { clip: self.clip, bounds: self.bounds }
+        let Self { clip, source_clip, bounds } = self;
+        RequestedConventions { clip, source_clip, bounds }
     }
 }
 
 /// A convention by name, as an option's value.
-fn parse_convention<C: Convention>(name: &str) -> Result<C, String> {
+pub fn parse_convention<C: Convention>(name: &str) -> Result<C, String> {
     C::find(name).ok_or_else(|| {
         let names: Vec<&str> = C::names().collect();
         format!("expected one of: {}", names.join(", "))

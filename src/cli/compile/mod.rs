@@ -5,7 +5,7 @@ mod depfile;
 mod files;
 mod target;
 
-pub use conventions::ConventionArguments;
+pub use conventions::{ConventionArguments, parse_convention};
 pub use files::file_ending;
 pub use target::{TargetChoice, parse_target, wanted_one, wanted_targets};
 

@@ -47,7 +47,7 @@ pub fn compose(
     settings: &Settings,
     options: &Options,
 ) -> Result<Composed, Diagnostics> {
-    let stage = stage_of(graph, &options.keep)?;
+    let stage = stage_of(graph, options)?;
     let preprocessed = preprocess(graph, settings, ROOM.take())?;
     let items =
         items::split_items(&preprocessed.tokens, &graph.modules).map_err(|error| vec![error])?;
@@ -94,24 +94,32 @@ fn warn_unversioned(
 }
 
 /// How the names of files end, before an optional `.glsl`, and the stage that this stands for.
-const STAGES: &[(&str, Stage)] =
-    &[("vert", Stage::Vertex), ("frag", Stage::Fragment), ("comp", Stage::Compute)];
+const STAGES: &[(&str, Stage)] = &[
+    ("vert", Stage::Vertex),
+    ("vs", Stage::Vertex),
+    ("frag", Stage::Fragment),
+    ("fs", Stage::Fragment),
+    ("comp", Stage::Compute),
+    ("cs", Stage::Compute),
+];
 
-fn stage_of(graph: &Graph, keep: &Keep) -> Result<Stage, Diagnostics> {
-    let name = graph.root.strip_suffix(".glsl").unwrap_or(&graph.root);
-    let ending = name.rsplit('.').next().unwrap_or_default();
-    match STAGES.iter().find(|(known, _)| *known == ending) {
-        Some((_, stage)) => Ok(*stage),
-        None if matches!(keep, Keep::Items(_) | Keep::Root) => Ok(Stage::Fragment),
+/// The stage that the name of a GLSL file says, such as `a.vert`, `a.vs` or `a.vert.glsl`.
+pub fn named_stage(path: &str) -> Option<Stage> {
+    let name = path.strip_suffix(".glsl").unwrap_or(path);
+    let ending = name.rsplit('.').next()?;
+    STAGES.iter().find(|(known, _)| *known == ending).map(|(_, stage)| *stage)
+}
+
+fn stage_of(graph: &Graph, options: &Options) -> Result<Stage, Diagnostics> {
+    match options.stage.or_else(|| named_stage(&graph.root)) {
+        Some(stage) => Ok(stage),
+        None if matches!(options.keep, Keep::Items(_) | Keep::Root) => Ok(Stage::Fragment),
         None => Err(vec![
             Diagnostic::error(
                 codes::UNKNOWN_STAGE,
                 format!("the name `{}` does not say for which stage it is", graph.root),
             )
-            .note(
-                "help: end it in `.vert.glsl`, `.frag.glsl` or `.comp.glsl`; for standard input \
-                 add `--stage`",
-            ),
+            .note("help: add `--stage`, or end it in `.vert.glsl`, `.frag.glsl` or `.comp.glsl`"),
         ]),
     }
 }

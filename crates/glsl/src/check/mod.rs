@@ -367,7 +367,7 @@ impl<'a> Checker<'a> {
         let is_main = |function: &&crate::tree::Function| function.name == "main";
         if self.problems.is_empty() && !self.shader.functions.iter().any(|f| is_main(&f)) {
             let end = At::default();
-            let _: Res<()> = self.fail(end, "the text has no function `main`");
+            self.report(codes::NO_ENTRY_POINT, end, "the file has no function `main`", "");
         }
     }
 

@@ -77,7 +77,7 @@ impl<'s> Writer<'s> {
         }
         self.plan_rest();
         if let Some(mode) = &shader.depth_mode {
-            self.facts.list.push(Fact::DepthMode(mode.clone()));
+            self.facts.list.push((Fact::DepthMode(mode.clone()), At::default()));
         }
     }
 
@@ -203,10 +203,20 @@ impl<'s> Writer<'s> {
                 *next += 1;
             }
             root.location = Some(*next);
-            self.facts.list.push(Fact::Location(var.name.clone(), *next));
+            if !self.is_only_color(var) {
+                self.facts.list.push((Fact::Location(var.name.clone(), *next), var.at));
+            }
             *next += count;
         }
         Some(root)
+    }
+
+    /// Whether this is the only output of a fragment shader, which has the location 0.
+    fn is_only_color(&self, var: &Var) -> bool {
+        let is_output = |var: &&Var| var.place == Place::Output;
+        var.place == Place::Output
+            && self.shader.stage == Stage::Fragment
+            && self.shader.vars.iter().filter(is_output).count() == 1
     }
 
     fn plan_leaf(&mut self, leaf: Leaf, input: bool, direct: bool, at: At) {
@@ -336,7 +346,7 @@ impl<'s> Writer<'s> {
                 self.refuse(var.at, message);
             }
             Meaning::Dropped(_) => {
-                self.facts.list.push(Fact::Dropped(builtin.name.to_owned()));
+                self.facts.list.push((Fact::Dropped(builtin.name.to_owned()), var.at));
                 self.declare_builtin(index, var);
             }
             Meaning::Color => self.plan_color(index, var),
@@ -497,8 +507,8 @@ impl<'s> Writer<'s> {
     pub(super) fn entry_return(&mut self, at: At) {
         if let Some(index) = self.entry.position {
             let name = self.var_name(index);
-            match self.source_clip() {
-                Clip::Kept | Clip::Source => {}
+            match self.options.clip {
+                Clip::Kept => {}
                 Clip::OpenGl => {
                     self.line(at, format!("{name}.z = ({name}.z + {name}.w) * 0.5;"));
                 }
@@ -513,26 +523,6 @@ impl<'s> Writer<'s> {
             _ => format!("return {}({});", self.entry.result, values.join(", ")),
         };
         self.line(at, text);
-    }
-
-    /// The clip space that the position is converted from.
-    fn source_clip(&self) -> Clip {
-        let vulkan = |var: &Var| {
-            let names = matches!(var.name.as_str(), "gl_VertexIndex" | "gl_InstanceIndex");
-            let separate = match var.ty.innermost() {
-                Type::Opaque(opaque) => {
-                    use crate::types::OpaqueKind::{Sampler, Subpass, Texture};
-                    matches!(opaque.kind, Sampler | Subpass | Texture)
-                }
-                _ => false,
-            };
-            names || separate || var.layout.set.is_some() || var.layout.push
-        };
-        match self.options.clip {
-            Clip::Source if self.shader.vars.iter().any(vulkan) => Clip::Vulkan,
-            Clip::Source => Clip::OpenGl,
-            other => other,
-        }
     }
 
     /// Whether `main` returns anything.

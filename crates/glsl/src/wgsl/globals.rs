@@ -174,7 +174,8 @@ impl Writer<'_> {
         let name = self.var_name(index);
         let group = var.layout.set.unwrap_or(0);
         if var.layout.push {
-            self.facts.list.push(Fact::PushConstant(name.clone()));
+            let at = self.var(index).at;
+            self.facts.list.push((Fact::PushConstant(name.clone()), at));
         }
         let names = match count {
             Some(count) => (0..count).map(|at| format!("{name}_{at}")).collect(),
@@ -194,12 +195,13 @@ impl Writer<'_> {
 
     /// The binding of an element of a variable; one that the text says otherwise is noted.
     fn binding(&mut self, index: u32, name: &str, element: u32, bindings: &mut Bindings) -> u32 {
-        let layout = &self.var(index).layout;
+        let var = self.var(index);
+        let layout = &var.layout;
         let found = bindings.take(layout.set.unwrap_or(0), layout.binding, element);
         if let Some(wanted) = layout.binding.map(|first| first.saturating_add(element))
             && wanted != found
         {
-            self.facts.list.push(Fact::Binding(name.to_owned(), wanted, found));
+            self.facts.list.push((Fact::Binding(name.to_owned(), wanted, found), var.at));
         }
         found
     }
@@ -298,7 +300,7 @@ impl Writer<'_> {
         self.declarations.entry(index).or_default().push(line);
         if opaque.kind == OpaqueKind::Subpass {
             let number = var.layout.attachment.unwrap_or(0);
-            self.facts.list.push(Fact::Attachment(glsl.clone(), number));
+            self.facts.list.push((Fact::Attachment(glsl.clone(), number), var.at));
             self.entry.needs_position = true;
         }
         self.add_resource(glsl, name.clone(), (group, binding), None);
@@ -428,7 +430,7 @@ impl Writer<'_> {
                 continue;
             };
             let numbers = known.iter().map(|number| as_f64(*number)).collect();
-            self.facts.list.push(Fact::Initial(var.name.clone(), numbers));
+            self.facts.list.push((Fact::Initial(var.name.clone(), numbers), var.at));
         }
         if members.is_empty() {
             return;

@@ -44,8 +44,6 @@ pub enum Clip {
     /// The position stays as it is written.
     #[default]
     Kept,
-    /// Vulkan's for texts with features of Vulkan, else OpenGL's.
-    Source,
     /// From OpenGL's, whose depth is from -1 to 1.
     OpenGl,
     /// From Vulkan's, whose second coordinate points down.

@@ -157,6 +157,35 @@ pub enum Fact {
 pub struct Facts {
     /// Uniforms, buffers, textures and images.
     pub resources: Vec<Resource>,
-    /// What else there is.
-    pub list: Vec<Fact>,
+    /// What else there is, with the declarations.
+    pub list: Vec<(Fact, At)>,
+}
+
+impl std::fmt::Display for Fact {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Dropped(name) => write!(out, "`{name}` is computed, and has no effect"),
+            Self::Initial(name, numbers) => {
+                let list: Vec<String> = numbers.iter().map(f64::to_string).collect();
+                let list = list.join(", ");
+                write!(out, "the host sets the uniform `{name}`, which begins with {list}")
+            }
+            Self::PushConstant(name) => {
+                write!(out, "`{name}` was a push constant, and is a uniform block here")
+            }
+            Self::Attachment(name, index) => {
+                write!(
+                    out,
+                    "`{name}` was the input attachment {index}: the host binds it as a texture"
+                )
+            }
+            Self::DepthMode(mode) => write!(out, "`gl_FragDepth` was declared as `{mode}`"),
+            Self::Location(name, location) => {
+                write!(out, "`{name}` had no location, and has {location} here")
+            }
+            Self::Binding(name, wanted, found) => {
+                write!(out, "`{name}` had the binding {wanted}, and has {found} here")
+            }
+        }
+    }
 }

@@ -7,7 +7,7 @@ use super::{axes, lists, names};
 use crate::axis::Axis;
 use crate::space::{Constraint, SliceLists, Space, TooComplex};
 use crate::{lint, report};
-use lamplight_bundle::{BoundsChecks, ClipConvention, Convention, Conventions, Target};
+use lamplight_bundle::{BoundsChecks, ClipConvention, Convention, Conventions, SourceClip, Target};
 use lamplight_diagnostic::source::{LIMITS, Span};
 use lamplight_diagnostic::{Diagnostic, Severity, codes};
 
@@ -73,6 +73,7 @@ const KEYS: &[&str] = &[
     "glsl",
     "targets",
     "clip",
+    "source_clip",
     "bounds",
     "axis",
     "constraint",
@@ -177,7 +178,15 @@ fn read_conventions(reader: &mut ManifestReader, table: &DeTable) -> Conventions
             (codes::UNKNOWN_BOUNDS, ["there is no choice of checks", "not one", "checks"]);
         reader.choice(value, "`bounds`", BoundsChecks::ALL.iter().copied(), unknown)
     });
-    Conventions { clip: clip.unwrap_or_default(), bounds: bounds.unwrap_or_default() }
+    let source_clip = table.get("source_clip").and_then(|value| {
+        let unknown = (codes::UNKNOWN_CLIP, ["there is no clip space", "not one", "clip spaces"]);
+        reader.choice(value, "`source_clip`", SourceClip::ALL.iter().copied(), unknown)
+    });
+    Conventions {
+        clip: clip.unwrap_or_default(),
+        source_clip: source_clip.unwrap_or_default(),
+        bounds: bounds.unwrap_or_default(),
+    }
 }
 
 /// The words of `features_default`, with the value of a feature that no axis declares.

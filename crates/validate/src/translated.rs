@@ -1,0 +1,139 @@
+//! GLSL as WGSL: our own translator reads what naga's front end does not.
+
+use lamplight_bundle::{Language, SourceClip, Stage};
+use lamplight_compose::{Composed, Segment, SourceMap};
+use lamplight_diagnostic::source::SourceId;
+use lamplight_diagnostic::{Diagnostic, Diagnostics, Label, codes};
+use lamplight_glsl::is_for_vulkan;
+use lamplight_glsl::tree::Stage as GlslStage;
+use lamplight_glsl::wgsl::{Clip, Options, Written};
+
+use super::{hints, limits, lint, on_large_stack, validate};
+
+/// Stands for the composed text, which is no source of the author's.
+const COMPOSED: SourceId = SourceId(u32::MAX);
+
+/// The clip space that the positions of a text are converted from, to WebGPU's.
+pub fn positions_of(composed: &Composed, source: SourceClip) -> Clip {
+    let is_vertex = composed.language == Language::Glsl && composed.stage == Some(Stage::Vertex);
+    match source {
+        _ if !is_vertex => Clip::Kept,
+        SourceClip::OpenGl => Clip::OpenGl,
+        SourceClip::Vulkan => Clip::Vulkan,
+        SourceClip::Auto if !is_for_vulkan(&composed.text) => Clip::OpenGl,
+        SourceClip::Auto | SourceClip::WebGpu => Clip::Kept,
+    }
+}
+
+/// Translates a composed text in GLSL to WGSL.
+///
+/// # Errors
+/// `limit-exceeded` for a text that is too large; mistakes of the text, and what has no counterpart
+/// in WGSL, in the author's places.
+pub fn translate_glsl(
+    composed: &Composed,
+    stage: Stage,
+    clip: Clip,
+) -> Result<Written, Diagnostics> {
+    limits::check_limits(composed).map_err(|error| vec![error])?;
+    let stage = match stage {
+        Stage::Vertex => GlslStage::Vertex,
+        Stage::Fragment => GlslStage::Fragment,
+        Stage::Compute => GlslStage::Compute,
+    };
+    let text = &composed.text;
+    on_large_stack(|| lamplight_glsl::translate(text, stage, COMPOSED, Options { clip }))
+        .map_err(|problems| in_authors_text(problems, composed))
+}
+
+/// The text as WGSL, with the places of its author. Its warnings are what WGSL has no word for.
+///
+/// # Errors
+/// As [`translate_glsl`]; also for a text that is not GLSL, or whose stage is not known.
+pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnostics> {
+    let (Language::Glsl, Some(stage)) = (composed.language, composed.stage) else {
+        let message = "the stage of the GLSL text is not known";
+        return Err(vec![Diagnostic::error(codes::GLSL_ERROR, message)]);
+    };
+    let Written { text, map, facts } = translate_glsl(composed, stage, clip)?;
+    let mut places = SourceMap::default();
+    for segment in map {
+        let range = segment.at.range();
+        let span = if range.is_empty() { None } else { composed.map.lookup(range) };
+        places.push(Segment { start: segment.start, span, verbatim: false });
+    }
+    let warnings = facts.list.iter().map(|(fact, at)| {
+        let told = Diagnostic::warning(codes::TRANSLATED_OTHERWISE, fact.to_string());
+        let place = Some(at.range()).filter(|range| !range.is_empty());
+        match place.and_then(|range| composed.map.lookup(range)) {
+            Some(span) => told.at(span, "declared here"),
+            None => told,
+        }
+    });
+    Ok(Composed {
+        language: Language::Wesl,
+        stage: None,
+        text,
+        map: places,
+        parts: Vec::new(),
+        reads: composed.reads.clone(),
+        warnings: warnings.collect(),
+        decisions: composed.decisions.clone(),
+        library: composed.library,
+    })
+}
+
+/// Validates a text in GLSL as WGSL, and looks for what a lint reports. This is for a text that
+/// naga's front end refused.
+///
+/// # Errors
+/// As [`glsl_as_wgsl`].
+pub fn lint_as_wgsl(composed: &Composed) -> Result<Diagnostics, Diagnostics> {
+    let mut wgsl = glsl_as_wgsl(composed, Clip::Kept)?;
+    let validated = validate(&wgsl)
+        .map_err(|errors| errors.into_iter().map(of_translation).collect::<Diagnostics>())?;
+    let mut found = std::mem::take(&mut wgsl.warnings);
+    found.extend(lint(&wgsl, &validated, false));
+    Ok(found)
+}
+
+/// An error about the WGSL that a text was translated to. The author did not write it: what it says
+/// of WGSL's rules is a mistake of the translator.
+pub fn of_translation(error: Diagnostic) -> Diagnostic {
+    if error.code != codes::WGSL_ERROR {
+        return error;
+    }
+    let message = format!("the translation of this GLSL is not valid: {}", error.message);
+    Diagnostic { code: codes::NAGA_INTERNAL, message, ..error }
+        .note("help: this is a mistake of Lamplight; please report it with the shader")
+}
+
+/// Places in the composed text as places in the author's.
+fn in_authors_text(mut problems: Diagnostics, composed: &Composed) -> Diagnostics {
+    for problem in &mut problems {
+        let labels = std::mem::take(&mut problem.labels);
+        let moved = labels.into_iter().filter_map(|label| {
+            let span = composed.map.lookup(label.span.range())?;
+            Some(Label { span, message: label.message })
+        });
+        problem.labels = moved.collect();
+    }
+    problems.into_iter().map(|problem| with_hint(problem, composed)).collect()
+}
+
+/// A name that nothing declares may be one of the library's, and a call that fits nothing shows what
+/// there is.
+fn with_hint(problem: Diagnostic, composed: &Composed) -> Diagnostic {
+    let message = problem.message.clone();
+    let quoted = message.strip_prefix('`').and_then(|rest| rest.split_once('`'));
+    match quoted {
+        Some((name, " is not declared")) => {
+            hints::hint_unknown(Diagnostic { notes: Vec::new(), ..problem }, composed, name)
+        }
+        Some((name, rest)) if rest.starts_with(" does not take (") => {
+            let mismatch = Diagnostic { code: codes::CALL_MISMATCH, ..problem };
+            hints::note_signatures(mismatch, composed, name)
+        }
+        _ => problem,
+    }
+}
