@@ -254,9 +254,10 @@ fn difference_is_shown() -> Result<(), Failed> {
     }
 }
 
-/// Every seventh output of each target is validated here, and each one with a new line. `cargo
-/// xtask gen --validate all` takes all.
-const VALIDATED: usize = 7;
+/// Every fortieth output of each target is validated here, and each one with a new line. The
+/// nightly tests take every seventh, and `cargo xtask gen --validate all` takes all.
+const VALIDATED: usize = 40;
+const VALIDATED_AT_NIGHT: usize = 7;
 /// The fewest outputs of a target that must be validated.
 const LEAST_VALIDATED: usize = 100;
 
@@ -289,7 +290,7 @@ fn validators_accept() -> Result<(), Failed> {
     Err(format!("{} of {} refused:\n{}", refusals.len(), some.len(), listed.join("\n")).into())
 }
 
-/// Every seventh output of a target, and those with a line that no output before them has. SPIR-V
+/// Outputs of a target at even distances, and those with a line that no output before them has. SPIR-V
 /// has no lines, so the lines of GLSL 4.50 choose its outputs.
 fn chosen_outputs(
     contents: &Contents,
@@ -299,13 +300,14 @@ fn chosen_outputs(
     let (mut seen, mut found) = (validators::SeenText::default(), Vec::new());
     let languages = contents.programs.values().flat_map(|program| program.languages.values());
     let units = languages.flat_map(|entries| entries.values()).flat_map(|one| &one.units);
+    let distance = if crate::is_whole() { VALIDATED_AT_NIGHT } else { VALIDATED };
     for (index, (hash, unit)) in units.enumerate() {
         let [text, output] = [with_lines, target].map(|one| unit.targets.get(one.name()));
         let (Some(text), Some(output)) = (text, output) else {
             return Err(format!("a unit has no output for {target}").into());
         };
         let is_new = seen.add(std::str::from_utf8(&text.bytes)?).line;
-        if is_new || index.is_multiple_of(VALIDATED) {
+        if is_new || index.is_multiple_of(distance) {
             found.push((*hash, unit, output));
         }
     }

@@ -120,6 +120,12 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     validators::tests,
 ];
 
+/// Whether a test does the whole of what it usually takes a part of, as `cargo xtask test nightly`
+/// asks for.
+fn is_whole() -> bool {
+    std::env::var_os("LAMPLIGHT_WHOLE").is_some()
+}
+
 fn main() -> ExitCode {
     // This changes environment variables, so it must be done while there is one thread. If
     // something is missing, the tests that need it say so.

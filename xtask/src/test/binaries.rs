@@ -97,7 +97,7 @@ pub fn choose(all: &[TestBinary], names: &[String]) -> Vec<TestBinary> {
 /// Packages that are optimised for a run of all tests, which interpret shaders, compile every
 /// permutation and draw. `Cargo.toml` has no such settings, since whoever runs the tests of one
 /// package waits for its build. The command line itself takes no time.
-const SLOW: [&str; 19] = [
+const SLOW: [&str; 20] = [
     "bundle",
     "check",
     "compose",
@@ -117,6 +117,7 @@ const SLOW: [&str; 19] = [
     "scenes",
     "syntax",
     "validate",
+    "validators",
 ];
 
 /// Options of cargo that all its runs for tests share.
