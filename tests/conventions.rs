@@ -17,8 +17,9 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 5] = [
+    let cases: [Case; 6] = [
         ("clip_spaces", clip_spaces),
+        ("source_clip_spaces", source_clip_spaces),
         ("clip_in_manifest_and_cache", clip_in_manifest_and_cache),
         ("registers", registers),
         ("slots", slots),
@@ -56,6 +57,54 @@ const CONVERTS: &str =
 fn glsl_targets() -> Vec<Target> {
     let entries = targets::ALL.iter().filter(|entry| entry.glsl.is_some());
     entries.map(|entry| entry.target).collect()
+}
+
+/// A position that OpenGL and WebGPU place at other depths, and Vulkan and WebGPU at other heights.
+const POSITION: &str = "in vec4 place;\nvoid main() { gl_Position = place; }\n";
+
+/// What becomes of the position of a vertex shader in GLSL: by the first line of the shader, and the
+/// options.
+const SOURCE_CLIPS: &[(&str, &[&str], Converted)] = &[
+    ("#version 330 core", &[], Converted::Depth),
+    ("#version 300 es", &[], Converted::Depth),
+    ("#version 330 core", &["--source-clip", "webgpu"], Converted::Nothing),
+    ("#version 330 core", &["--source-clip", "vulkan"], Converted::Height),
+    ("#version 330 core", &["--clip", "native"], Converted::Nothing),
+    ("#version 450\nlayout(location = 0)", &[], Converted::Nothing),
+    ("#version 450\nlayout(location = 0)", &["--source-clip", "opengl"], Converted::Depth),
+    ("#version 450\nlayout(location = 0)", &["--source-clip", "vulkan"], Converted::Height),
+];
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Converted {
+    Nothing,
+    /// From -1 to 1, to 0 to 1.
+    Depth,
+    /// From downwards to upwards.
+    Height,
+}
+
+/// The clip space of a shader in GLSL is converted once, by its version or as somebody asks.
+fn source_clip_spaces() -> Outcome {
+    let package = Package::new(MANIFEST, SHADER)?;
+    for (first, options, expected) in SOURCE_CLIPS {
+        fs::write(package.path("place.vert"), format!("{first}\n{POSITION}"))?;
+        let command = ["compile", "place.vert", "--target", "wgsl"];
+        let output = package.run(&[&command[..], options].concat())?;
+        expect(&output, 0, &[])?;
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let found = match (text.contains("0.5f"), text.contains("= -(")) {
+            (false, false) => Converted::Nothing,
+            (true, false) => Converted::Depth,
+            (false, true) => Converted::Height,
+            _ => return Err(format!("{first} {options:?}: both are converted:\n{text}").into()),
+        };
+        if found != *expected {
+            let what = format!("{first} {options:?}: expected {expected:?}, found {found:?}");
+            return Err(format!("{what}:\n{text}").into());
+        }
+    }
+    Ok(())
 }
 
 fn found(package: &Package, out: &str, entry: &str, target: Target) -> Result<Found, Failed> {

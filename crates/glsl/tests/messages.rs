@@ -9,6 +9,7 @@ pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("glsl::messages", each_message),
         Trial::test("glsl::refused", each_refusal),
+        Trial::test("glsl::mistakes_are_told_once", told_once),
         Trial::test("glsl::parser_goes_on", parser_goes_on),
     ]
 }
@@ -58,6 +59,26 @@ fn each_message() -> Result<(), Failed> {
         let at = problem.labels.first().map_or("", |label| &text[label.span.range()]);
         if problem.message != *message || at != *place {
             return Err(format!("{body}: `{at}`: {}", problem.message).into());
+        }
+    }
+    Ok(())
+}
+
+/// A declaration with a mistake is one error, however often its name is used.
+fn told_once() -> Result<(), Failed> {
+    for declared in [
+        "double a = 1.0lf;",
+        "vec2 a = 1.0;",
+        "unknown a = unknown(1.0);",
+        "sampler2D a;",
+        "const float a;",
+    ] {
+        let text = format!("#version 450\nvoid main() {{ {declared} a; float(a); a = a; }}\n");
+        let found = translate(&text, Stage::Fragment, SourceId(0), Default::default());
+        let messages: Vec<String> =
+            found.err().into_iter().flatten().map(|problem| problem.message).collect();
+        if messages.iter().any(|message| message.contains("`a` is not declared")) {
+            return Err(format!("{declared}: {messages:?}").into());
         }
     }
     Ok(())

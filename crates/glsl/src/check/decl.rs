@@ -12,7 +12,13 @@ impl<'a> Checker<'a> {
     /// A declaration of the text.
     pub(super) fn item(&mut self, item: &'a ast::Item<'a>, at: At) -> Res<()> {
         match item {
-            ast::Item::Function(function) => self.function(function),
+            ast::Item::Function(function) => {
+                let read = self.function(function);
+                if read.is_err() {
+                    self.unread.insert(function.name.text);
+                }
+                read
+            }
             ast::Item::Vars(vars) => self.global_vars(vars),
             ast::Item::Block(block) => self.block(block),
             ast::Item::Quals(list, names) => self.qualified(list, names, at),
@@ -60,7 +66,13 @@ impl<'a> Checker<'a> {
                     None => return self.fail_unknown(name, spec.at),
                 },
             },
-            Base::Struct(name, members) => self.structure(*name, members, spec.at)?,
+            Base::Struct(name, members) => {
+                let read = self.structure(*name, members, spec.at);
+                if read.is_err() {
+                    self.unread.extend(name.iter().map(|name| name.text));
+                }
+                read?
+            }
         };
         self.sized(base, spec, sizes)
     }
@@ -167,6 +179,19 @@ impl<'a> Checker<'a> {
     }
 
     fn global_vars(&mut self, vars: &'a ast::Vars<'a>) -> Res<()> {
+        let read = self.each_global_var(vars);
+        if read.is_err() {
+            self.forget_names(vars);
+        }
+        read
+    }
+
+    /// Notes the names of a declaration that has a mistake.
+    pub(super) fn forget_names(&mut self, vars: &'a ast::Vars<'a>) {
+        self.unread.extend(vars.names.iter().map(|declarator| declarator.name.text));
+    }
+
+    fn each_global_var(&mut self, vars: &'a ast::Vars<'a>) -> Res<()> {
         let quals = self.quals(&vars.quals)?;
         let base = self.spec_type(&vars.ty, NO_SIZES)?;
         for declarator in &vars.names {

@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 
 use lamplight_diagnostic::source::{SourceId, Span};
 use lamplight_diagnostic::{Code, Diagnostic, Diagnostics, codes};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::ast;
 use crate::builtin::variables::{CONSTANTS, find_builtin};
@@ -91,6 +91,8 @@ pub(crate) struct Checker<'a> {
     loops: u32,
     switches: u32,
     problems: Diagnostics,
+    /// Names whose declarations have mistakes. What uses them has none of its own.
+    unread: FxHashSet<&'a str>,
 }
 
 impl<'a> Checker<'a> {
@@ -122,6 +124,7 @@ impl<'a> Checker<'a> {
             loops: 0,
             switches: 0,
             problems: Vec::new(),
+            unread: FxHashSet::default(),
         }
     }
 
@@ -241,6 +244,9 @@ impl<'a> Checker<'a> {
     }
 
     fn fail_unknown<T>(&mut self, name: &str, at: At) -> Res<T> {
+        if self.unread.contains(name) {
+            return Err(Failed);
+        }
         let known: Vec<&str> = self.scopes.iter().flat_map(|scope| scope.keys().copied()).collect();
         let mut sorted = known;
         sorted.sort_unstable();

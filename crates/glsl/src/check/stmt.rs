@@ -227,6 +227,14 @@ impl<'a> Checker<'a> {
     }
 
     fn local_vars(&mut self, vars: &'a ast::Vars<'a>, out: &mut Vec<Stmt>) -> Res<()> {
+        let read = self.each_local_var(vars, out);
+        if read.is_err() {
+            self.forget_names(vars);
+        }
+        read
+    }
+
+    fn each_local_var(&mut self, vars: &'a ast::Vars<'a>, out: &mut Vec<Stmt>) -> Res<()> {
         let quals = self.quals(&vars.quals)?;
         let base = self.spec_type(&vars.ty, NO_SIZES)?;
         let place = match quals.storage {
@@ -245,7 +253,6 @@ impl<'a> Checker<'a> {
                 Some(init) => match self.initializer(init, &ty) {
                     Ok(init) => Some(init),
                     Err(failed) => {
-                        // What names the variable is no mistake of its own.
                         let index = self.new_var(name.text, ty, Place::Local, name.at);
                         self.declare(name, Symbol::Var(index))?;
                         return Err(failed);
