@@ -220,10 +220,12 @@ fn batch(seeds: std::ops::Range<u64>, how: &How, tally: &mut Tally) -> Result<()
                 }
                 if how.often > 0 && seed % how.often == 0 {
                     tally.elsewhere += usize::from(sound.is_elsewhere);
-                    let (whole, refused): (Vec<_>, Vec<_>) =
-                        sound.runnables.into_iter().partition(Runnable::is_valid_as_a_whole);
-                    tally.refused_whole += refused.len();
-                    runnables.extend(whole);
+                    for runnable in sound.runnables {
+                        match runnable.as_a_whole() {
+                            Ok(whole) => runnables.push(whole),
+                            Err(_) => tally.refused_whole += 1,
+                        }
+                    }
                 }
                 if seed % how.every == 0 {
                     let some = few(sound.outputs, how.most);

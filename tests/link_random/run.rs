@@ -25,8 +25,9 @@ use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{Buffers, DrawItem, Drawing, EntryPoint, Mesh};
 use lamplight::execute::shipped::Shipped;
 use lamplight::execute::{Session, ShippedPair};
+use lamplight::glsl::wgsl::Clip;
 use lamplight::picture::frame::{pack_buffer, probe};
-use lamplight::validate::{Validated, validate};
+use lamplight::validate::{Validated, glsl_as_wgsl, validate};
 
 use super::same::Finding;
 use crate::frames::fixture;
@@ -54,10 +55,18 @@ impl Runnable {
         self.unit.reflection.stage == Stage::Fragment
     }
 
-    /// Whether naga accepts all of its text, with functions that the entry point does not need.
-    /// WGSL was validated with all of them before.
-    pub fn is_valid_as_a_whole(&self) -> bool {
-        self.composed.language == Language::Wesl || validate(&lean(&self.composed)).is_ok()
+    /// The stage with all of its text in a form that naga reads, with functions that the entry point
+    /// does not need; as it was if there is none. WGSL was validated with all of them before, and what
+    /// naga's front end does not read of GLSL is compiled from its translation.
+    pub fn as_a_whole(self) -> Result<Self, Self> {
+        let is_read = |composed: &Composed| validate(&lean(composed)).is_ok();
+        if self.composed.language == Language::Wesl || is_read(&self.composed) {
+            return Ok(self);
+        }
+        match glsl_as_wgsl(&self.composed, Clip::Kept) {
+            Ok(composed) if is_read(&composed) => Ok(Self { composed, ..self }),
+            _ => Err(self),
+        }
     }
 }
 
