@@ -222,8 +222,8 @@ fn batch(seeds: std::ops::Range<u64>, how: &How, tally: &mut Tally) -> Result<()
                     tally.elsewhere += usize::from(sound.is_elsewhere);
                     for runnable in sound.runnables {
                         match runnable.as_a_whole() {
-                            Ok(whole) => runnables.push(whole),
-                            Err(_) => tally.refused_whole += 1,
+                            Some(whole) => runnables.push(whole),
+                            None => tally.refused_whole += 1,
                         }
                     }
                 }

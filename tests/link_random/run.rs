@@ -56,17 +56,15 @@ impl Runnable {
     }
 
     /// The stage with all of its text in a form that naga reads, with functions that the entry point
-    /// does not need; as it was if there is none. WGSL was validated with all of them before, and what
+    /// does not need; `None` if there is none. WGSL was validated with all of them before, and what
     /// naga's front end does not read of GLSL is compiled from its translation.
-    pub fn as_a_whole(self) -> Result<Self, Self> {
+    pub fn as_a_whole(self) -> Option<Self> {
         let is_read = |composed: &Composed| validate(&lean(composed)).is_ok();
         if self.composed.language == Language::Wesl || is_read(&self.composed) {
-            return Ok(self);
+            return Some(self);
         }
-        match glsl_as_wgsl(&self.composed, Clip::Kept) {
-            Ok(composed) if is_read(&composed) => Ok(Self { composed, ..self }),
-            _ => Err(self),
-        }
+        let composed = glsl_as_wgsl(&self.composed, Clip::Kept).ok()?;
+        is_read(&composed).then_some(Self { composed, ..self })
     }
 }
 
