@@ -9,8 +9,8 @@ pub struct ConventionArguments {
     #[arg(long, value_name = "SPACE", value_parser = parse_convention::<ClipConvention>)]
     clip: Option<ClipConvention>,
     /// Clip space of vertex shaders in GLSL: `opengl`, `vulkan`, `webgpu`, or `auto`, which is
-    /// `opengl` for versions below 4.50 without features of Vulkan, else `webgpu` [default: that of the program in
-    /// the manifest, or else `auto`].
+    /// `opengl` for versions below 4.50 without features of Vulkan, else `webgpu` [default: that of
+    /// the program in the manifest, or else `auto`].
     #[arg(long, value_name = "SPACE", value_parser = parse_convention::<SourceClip>)]
     source_clip: Option<SourceClip>,
     /// Checks: `restrict` clamps indices and coordinates and ends endless loops, `unchecked` adds
