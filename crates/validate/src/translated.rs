@@ -121,7 +121,7 @@ fn in_authors_text(mut problems: Diagnostics, composed: &Composed) -> Diagnostic
     problems.into_iter().map(|problem| with_hint(problem, composed)).collect()
 }
 
-/// A name that nothing declares may be one of the library's, and a call that fits nothing shows what
+/// A name that nothing declares may be one of the library's. A call that fits nothing shows what
 /// there is.
 fn with_hint(problem: Diagnostic, composed: &Composed) -> Diagnostic {
     let message = problem.message.clone();
