@@ -20,9 +20,20 @@ const TYPES: &[&str] =
 /// The least version that shaders for Vulkan have. What is written for OpenGL rarely asks for it.
 const VERSION: u32 = 450;
 
-/// Whether a text is of version 4.50 or later, or has anything that only GLSL for Vulkan has.
+/// Words of the first versions, which GLSL for Vulkan does not have. A text without a `#version` may
+/// have them.
+const OLD_WORDS: &[&str] = &["attribute", "varying"];
+
+/// Whether a text is of version 4.50 or later, without words of the first versions, or has anything that only GLSL for Vulkan has.
 pub fn is_for_vulkan(text: &str) -> bool {
     let Lexed { tokens, comments: _, directives } = tokenize(text);
+    let is_old = |token: &Token| {
+        token.kind == Kind::Word
+            && text.get(token.at.range()).is_some_and(|word| OLD_WORDS.contains(&word))
+    };
+    if tokens.iter().any(is_old) {
+        return false;
+    }
     if directives.iter().filter_map(|at| version(text.get(at.range())?)).any(|it| it >= VERSION) {
         return true;
     }
@@ -84,6 +95,7 @@ mod tests {
         for text in [
             "#version 330 core\nvoid main() {}",
             "#version 320 es\nvoid main() {}",
+            "#version 450\nattribute vec4 a; void main() { gl_Position = a; }",
             "uniform sampler2D t; void main() { gl_FragColor = texture2D(t, vec2(0.0)); }",
             "void main() { int set = 0; set = 1; gl_Position = texture(t, a); }",
             "layout(location = 0) in vec4 texture_at; void main() { f(a, set = 1); }",

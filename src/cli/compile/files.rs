@@ -21,7 +21,8 @@ pub struct OutputFile {
 }
 
 /// Endings of root modules, which are removed for outputs: `forward.frag.glsl` has two.
-const ENDINGS: &[&str] = &[".wesl", ".wgsl", ".glsl", ".vert", ".frag", ".comp"];
+const ENDINGS: &[&str] =
+    &[".wesl", ".wgsl", ".glsl", ".vert", ".frag", ".comp", ".vs", ".fs", ".cs"];
 
 /// The name of a root module without its endings.
 pub fn module_stem(file: &Path) -> String {
