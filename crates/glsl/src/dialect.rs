@@ -24,23 +24,20 @@ const VERSION: u32 = 450;
 /// have them.
 const OLD_WORDS: &[&str] = &["attribute", "varying"];
 
-/// Whether a text is of version 4.50 or later, without words of the first versions, or has anything that only GLSL for Vulkan has.
+/// Whether a text is of version 4.50 or later, or has anything that only GLSL for Vulkan has. One with
+/// words of the first versions is not for Vulkan.
 pub fn is_for_vulkan(text: &str) -> bool {
     let Lexed { tokens, comments: _, directives } = tokenize(text);
-    let is_old = |token: &Token| {
-        token.kind == Kind::Word
-            && text.get(token.at.range()).is_some_and(|word| OLD_WORDS.contains(&word))
+    let word = |token: &Token| match token.kind {
+        Kind::Word => text.get(token.at.range()),
+        _ => None,
     };
-    if tokens.iter().any(is_old) {
+    if tokens.iter().filter_map(word).any(|word| OLD_WORDS.contains(&word)) {
         return false;
     }
     if directives.iter().filter_map(|at| version(text.get(at.range())?)).any(|it| it >= VERSION) {
         return true;
     }
-    let word = |token: &Token| match token.kind {
-        Kind::Word => text.get(token.at.range()),
-        _ => None,
-    };
     tokens.windows(2).any(|pair| {
         let Some(found) = word(&pair[0]) else { return false };
         let is_type = || TYPES.iter().any(|start| found.starts_with(start));
@@ -64,8 +61,7 @@ fn version(line: &str) -> Option<u32> {
 fn is_in_layout(text: &str, tokens: &[Token], token: Token) -> bool {
     let end = tokens.partition_point(|one| one.at.start < token.at.start);
     let mut before = tokens[..end].iter().rev();
-    let open =
-        before.find(|one| matches!(one.kind, kind if kind == mark("(") || kind == mark(";")));
+    let open = before.find(|one| [mark("("), mark(";")].contains(&one.kind));
     let layout = before.next().and_then(|one| text.get(one.at.range()));
     open.is_some_and(|one| one.kind == mark("(")) && layout == Some("layout")
 }

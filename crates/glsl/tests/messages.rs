@@ -9,7 +9,7 @@ pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("glsl::messages", each_message),
         Trial::test("glsl::refused", each_refusal),
-        Trial::test("glsl::mistakes_are_told_once", told_once),
+        Trial::test("glsl::mistakes_are_reported_once", reported_once),
         Trial::test("glsl::parser_goes_on", parser_goes_on),
     ]
 }
@@ -65,7 +65,7 @@ fn each_message() -> Result<(), Failed> {
 }
 
 /// A declaration with a mistake is one error, however often its name is used.
-fn told_once() -> Result<(), Failed> {
+fn reported_once() -> Result<(), Failed> {
     for declared in [
         "double a = 1.0lf;",
         "vec2 a = 1.0;",

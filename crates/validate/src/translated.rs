@@ -63,11 +63,11 @@ pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnos
         places.push(Segment { start: segment.start, span, verbatim: false });
     }
     let warnings = facts.list.iter().map(|(fact, at)| {
-        let told = Diagnostic::warning(codes::TRANSLATED_OTHERWISE, fact.to_string());
+        let warning = Diagnostic::warning(codes::TRANSLATED_OTHERWISE, fact.to_string());
         let place = Some(at.range()).filter(|range| !range.is_empty());
         match place.and_then(|range| composed.map.lookup(range)) {
-            Some(span) => told.at(span, "declared here"),
-            None => told,
+            Some(span) => warning.at(span, "declared here"),
+            None => warning,
         }
     });
     Ok(Composed {

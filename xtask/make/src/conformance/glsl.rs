@@ -7,19 +7,10 @@ use std::process::{Command, Stdio};
 
 use lamplight::bundle::{Language, Stage, Target};
 use lamplight::compose::Composed;
+use lamplight::compose::glsl::named_stage;
 use lamplight::diagnostic::codes;
 use lamplight::link::{Linker, TextForms, compile};
 use xtask::{CommandFailure, CommandResult};
-
-/// How the names of files end, and the stage that this stands for.
-const STAGES: &[(&str, &str, Stage)] = &[
-    ("vert", "vert", Stage::Vertex),
-    ("vs", "vert", Stage::Vertex),
-    ("frag", "frag", Stage::Fragment),
-    ("fs", "frag", Stage::Fragment),
-    ("comp", "comp", Stage::Compute),
-    ("cs", "comp", Stage::Compute),
-];
 
 fn usage() -> CommandFailure {
     CommandFailure::usage(
@@ -36,6 +27,8 @@ struct Count {
     accepted: usize,
     /// Of these, the files that compile for every target that has what they need.
     compiled: usize,
+    /// Of these, the files that compile for all targets there are.
+    everywhere: usize,
     /// Files by the reason for which they do not, with an example.
     causes: BTreeMap<String, (usize, PathBuf)>,
 }
@@ -56,15 +49,18 @@ pub fn run(arguments: &[String]) -> CommandResult {
     }
     println!("{}", glslang_version()?);
     println!(
-        "| folder | files | glslang accepts | compiled for all targets that can express them | |"
+        "| folder | files | glslang accepts | compiled for all targets that can express them | | for all targets |"
     );
-    println!("|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|");
     let mut counts = Vec::new();
     for folder in &folders {
         let count = count_folder(folder, &includes)?;
         let part = 100.0 * count.compiled as f64 / count.accepted.max(1) as f64;
-        let Count { files, accepted, compiled, .. } = &count;
-        println!("| {} | {files} | {accepted} | {compiled} | {part:.1} % |", folder.display());
+        let Count { files, accepted, compiled, everywhere, causes: _ } = &count;
+        println!(
+            "| {} | {files} | {accepted} | {compiled} | {part:.1} % | {everywhere} |",
+            folder.display()
+        );
         counts.push(count);
     }
     let mut causes: BTreeMap<String, (usize, PathBuf)> = BTreeMap::new();
@@ -97,15 +93,15 @@ fn count_folder(folder: &Path, includes: &[String]) -> Result<Count, CommandFail
     files.sort();
     let mut count = Count::default();
     for file in files {
-        let ending = file.extension().unwrap_or_default().to_string_lossy().into_owned();
-        let Some((_, name, stage)) = STAGES.iter().find(|(known, _, _)| *known == ending) else {
-            continue;
-        };
+        let Some(stage) = named_stage(&file.to_string_lossy()) else { continue };
         count.files += 1;
-        let Some(text) = accepted_text(&file, name, includes) else { continue };
+        let Some(text) = accepted_text(&file, stage.suffix(), includes) else { continue };
         count.accepted += 1;
-        match compiled(&text, *stage) {
-            Ok(()) => count.compiled += 1,
+        match compiled(&text, stage) {
+            Ok(lacking) => {
+                count.compiled += 1;
+                count.everywhere += usize::from(lacking == 0);
+            }
             Err(cause) => count.causes.entry(cause).or_insert((0, file)).0 += 1,
         }
     }
@@ -138,9 +134,9 @@ fn accepted_text(file: &Path, stage: &str, includes: &[String]) -> Option<String
     String::from_utf8(text).ok()
 }
 
-/// Whether a text compiles for every target that has what it needs. The error is the cause, without
-/// names.
-fn compiled(text: &str, stage: Stage) -> Result<(), String> {
+/// Compiles a text for every target, and gives the number of those that lack what it needs. The error is
+/// the cause, without names.
+fn compiled(text: &str, stage: Stage) -> Result<usize, String> {
     let composed = Composed::of_text(Language::Glsl, Some(stage), text.to_owned());
     let text = TextForms { composed: &composed, lean: &composed };
     let (mut made, mut lacking) = (0, String::new());
@@ -158,5 +154,5 @@ fn compiled(text: &str, stage: Stage) -> Result<(), String> {
             }
         }
     }
-    if made == 0 { Err(lacking) } else { Ok(()) }
+    if made == 0 { Err(lacking) } else { Ok(Target::ALL.len() - made) }
 }
