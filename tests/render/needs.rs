@@ -64,6 +64,7 @@ fn numbers_are_demanded() -> Result<(), Failed> {
         name: "haze".to_owned(),
         kind: BindingKind::Uniform,
         ty: "Haze".to_owned(),
+        count: None,
         size: Some(32),
         writable: false,
         members: vec![member("color", 0), member("tint", 16)],

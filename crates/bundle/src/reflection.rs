@@ -95,6 +95,9 @@ pub struct Binding {
     /// Type in WGSL.
     #[serde(rename = "type")]
     pub ty: String,
+    /// How many bindings an array of them has; 0 if the host decides it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<u32>,
     /// The size of a buffer, without the elements of a runtime-sized array at its end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<u32>,

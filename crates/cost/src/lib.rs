@@ -89,7 +89,7 @@ pub fn function_subject(
 
 fn stage_alone(module: naga::Module, conventions: Conventions) -> Result<Pipeline, String> {
     let info = info_of(&module).map_err(|error| error.to_string())?;
-    let validated = Validated { language: Language::Wesl, module, info };
+    let validated = Validated { language: Language::Wesl, module, info, portable: true };
     Pipeline::new(ReflectedStage::of_module(&validated, ENTRY, conventions)?, None)
 }
 

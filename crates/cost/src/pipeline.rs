@@ -190,7 +190,7 @@ fn partner_stage(text: &str) -> Result<ReflectedStage, String> {
     let with_context = |error: &dyn std::fmt::Display| format!("the stage added to it: {error}");
     let module = naga::front::wgsl::parse_str(text).map_err(|error| with_context(&error))?;
     let info = info_of(&module).map_err(|error| with_context(&error))?;
-    let validated = Validated { language: Language::Wesl, module, info };
+    let validated = Validated { language: Language::Wesl, module, info, portable: true };
     ReflectedStage::of_module(&validated, PARTNER, Conventions::default())
 }
 

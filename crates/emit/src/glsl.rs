@@ -8,7 +8,7 @@ use super::plain::{self, Needs};
 use super::reflect::place_of;
 use super::remainder;
 use super::rename;
-use super::slots::{EXPLICIT_LIMIT, Numbering, assign_slots, native_reflection};
+use super::slots::{EXPLICIT_LIMIT, Numbering, UsedBinding, assign_slots, native_reflection};
 use super::text::BoundedText;
 use super::{EmitSource, Emitted};
 use lamplight_bundle::{BindingKind, ClipConvention, Combined, Native};
@@ -57,7 +57,10 @@ pub fn write_glsl(
         bounds_policies(source, version),
     )
     .and_then(|mut writer| writer.write());
-    let mut info = written.map_err(|error| text.explain(error))?;
+    let mut info = written.map_err(|error| match error {
+        naga::back::glsl::Error::MissingFeatures(features) => missing_words(features),
+        error => text.explain(error),
+    })?;
     // naga omits the prefix of this one extension's name, and no driver knows it without.
     let mut text = with_mask_elements(text.0.replacen("#extension ARB_", "#extension GL_ARB_", 1));
     if defined.is_some() {
@@ -157,7 +160,7 @@ fn writer_options(
         ..Options::default()
     };
     if numbering == Numbering::Explicit {
-        for (binding, _, index) in assign_slots(source, numbering) {
+        for (UsedBinding { place: binding, .. }, index) in assign_slots(source, numbering) {
             let slot = index.and_then(|index| u8::try_from(index).ok()).ok_or_else(|| {
                 format!(
                     "@group({}) @binding({}) has no number: this target takes groups and bindings below {EXPLICIT_LIMIT}",
@@ -168,6 +171,22 @@ fn writer_options(
         }
     }
     Ok(options)
+}
+
+/// What a version of the language lacks, in words.
+fn missing_words(features: naga::back::glsl::Features) -> String {
+    let names: Vec<String> = features
+        .iter_names()
+        .map(|(name, _)| match name {
+            "BUFFER_STORAGE" => "storage buffers".to_owned(),
+            "COMPUTE_SHADER" => "compute shaders".to_owned(),
+            "DYNAMIC_ARRAY_SIZE" => "arrays whose size is not constant".to_owned(),
+            "IMAGE_LOAD_STORE" => "storage textures".to_owned(),
+            "CUBE_TEXTURES_ARRAY" => "arrays of cube textures".to_owned(),
+            _ => name.to_lowercase().replace('_', " "),
+        })
+        .collect();
+    format!("the language lacks {}", names.join(", "))
 }
 
 /// What stands between the name of a block's type and its group and binding.
@@ -212,10 +231,9 @@ fn glsl_reflection(source: &EmitSource<'_>, info: &ReflectionInfo, numbering: Nu
     let mut native = native_reflection(source, "main", numbering);
     let samplers: Vec<_> = assign_slots(source, numbering)
         .into_iter()
-        .filter(|(_, kind, _)| {
-            matches!(kind, BindingKind::Sampler | BindingKind::ComparisonSampler)
-        })
-        .map(|(binding, ..)| [binding.group, binding.binding])
+        .map(|(used, _)| used)
+        .filter(|used| matches!(used.kind, BindingKind::Sampler | BindingKind::ComparisonSampler))
+        .map(|used| [used.place.group, used.place.binding])
         .collect();
     native.slots.retain(|slot| !samplers.contains(&[slot.group, slot.binding]));
     native.combined = combined_samplers(source, info);

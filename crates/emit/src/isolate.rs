@@ -25,5 +25,5 @@ fn keep_entry(validated: &Validated, index: usize) -> Result<Validated, Diagnost
         let message = format!("a compacted module is not valid: {error}");
         Diagnostic::error(codes::NAGA_INTERNAL, message)
     })?;
-    Ok(Validated { language: validated.language, module, info })
+    Ok(Validated { language: validated.language, module, info, portable: validated.portable })
 }

@@ -15,7 +15,7 @@ use super::{columns, strides, targets};
 use lamplight_bundle::{Language, Target};
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
-use lamplight_validate::Validated;
+use lamplight_validate::{CAPABILITIES, NOT_EVERY, Validated, first_use, lacking};
 
 /// Something that GLSL did not have from the start.
 struct Later {
@@ -98,6 +98,78 @@ const LATER: &[(MathFunction, Later)] = &[
 
 const TWO_ROWS: &str =
     "a matrix of two rows in a uniform block has another layout in GLSL: use vectors";
+
+/// Refuses what only other targets have: types, arrays of bindings, clip distances.
+///
+/// # Errors
+/// `not-portable`, with the name of the target.
+pub fn check_capabilities(
+    composed: &Composed,
+    validated: &Validated,
+    wanted: &[Target],
+) -> Result<(), Diagnostics> {
+    let entries = targets::ALL.iter().filter(|entry| wanted.contains(&entry.target));
+    if let Some(error) = (!validated.portable).then(|| doubled(composed, validated)).flatten() {
+        return Err(vec![error]);
+    }
+    let found: Diagnostics = entries
+        .filter_map(|entry| {
+            let capabilities = CAPABILITIES.union(entry.capabilities);
+            let error = lacking(composed, validated, capabilities)?;
+            let what = error.message.strip_prefix(NOT_EVERY).unwrap_or(&error.message);
+            let message = format!("target `{}` does not have{what}", entry.target);
+            Some(Diagnostic { message, ..error })
+        })
+        .collect();
+    if found.is_empty() { Ok(()) } else { Err(found) }
+}
+
+/// Functions that no target computes with 64 bits.
+const SINGLE: &[MathFunction] = &[
+    MathFunction::Acos,
+    MathFunction::Acosh,
+    MathFunction::Asin,
+    MathFunction::Asinh,
+    MathFunction::Atan,
+    MathFunction::Atan2,
+    MathFunction::Atanh,
+    MathFunction::Cos,
+    MathFunction::Cosh,
+    MathFunction::Degrees,
+    MathFunction::Exp,
+    MathFunction::Exp2,
+    MathFunction::Log,
+    MathFunction::Log2,
+    MathFunction::Pow,
+    MathFunction::Radians,
+    MathFunction::Sin,
+    MathFunction::Sinh,
+    MathFunction::Tan,
+    MathFunction::Tanh,
+];
+
+/// The error about a function of 64-bit numbers that no target has.
+fn doubled(composed: &Composed, validated: &Validated) -> Option<Diagnostic> {
+    let Validated { language: _, module, info, portable: _ } = validated;
+    let functions = module.functions.iter().map(|(handle, function)| (&info[handle], function));
+    let points = module.entry_points.iter().enumerate();
+    let points = points.map(|(index, point)| (info.get_entry_point(index), &point.function));
+    let (function, span) = functions.chain(points).find_map(|(info, function)| {
+        function.expressions.iter().find_map(|(handle, expression)| match expression {
+            Expression::Math { fun, arg, .. } if SINGLE.contains(fun) => {
+                let scalar = info[*arg].ty.inner_with(&module.types).scalar();
+                let is_double = scalar.is_some_and(|scalar| scalar.width == 8);
+                is_double.then(|| (*fun, function.expressions.get_span(handle)))
+            }
+            _ => None,
+        })
+    })?;
+    let name = format!("{function:?}").to_lowercase();
+    let message = format!("no target computes `{name}` with numbers of 64 bits");
+    let error = Diagnostic::error(codes::NOT_PORTABLE, message);
+    let place = span.to_range().and_then(|range| composed.map.lookup(range));
+    Some(place.into_iter().fold(error, |error, span| error.at(span, "it is called here")))
+}
 
 /// Refuses what targets lack, at the author's places where `composed` knows them.
 ///
@@ -195,33 +267,10 @@ fn arrays_of_arrays(
     module.types.iter().filter_map(move |(handle, ty)| match &ty.inner {
         TypeInner::Array { base, .. } => {
             let is_array = matches!(module.types[*base].inner, TypeInner::Array { .. });
-            what.filter(|_| is_array).map(|what| (what, place_of(module, handle)))
+            what.filter(|_| is_array).map(|what| (what, first_use(module, &|ty| ty == handle)))
         }
         _ => None,
     })
-}
-
-/// Where a type without a name is first used.
-fn place_of(module: &Module, ty: Handle<Type>) -> Span {
-    let points = module.entry_points.iter().map(|point| &point.function);
-    let functions = module.functions.iter().map(|(_, function)| function).chain(points);
-    let in_functions = functions.flat_map(|function| {
-        let locals = function.local_variables.iter().filter(move |(_, local)| local.ty == ty);
-        let made = function.expressions.iter().filter(move |(_, one)| {
-            matches!(one, Expression::Compose { ty: own, .. } | Expression::ZeroValue(own) if *own == ty)
-        });
-        let locals = locals.map(|(handle, _)| function.local_variables.get_span(handle));
-        locals.chain(made.map(|(handle, _)| function.expressions.get_span(handle)))
-    });
-    let globals = module.global_variables.iter().filter(|(_, global)| global.ty == ty);
-    let globals = globals.map(|(handle, _)| module.global_variables.get_span(handle));
-    let holders = module.types.iter().filter(|(_, one)| match &one.inner {
-        TypeInner::Struct { members, .. } => members.iter().any(|member| member.ty == ty),
-        _ => false,
-    });
-    let holders = holders.map(|(handle, _)| module.types.get_span(handle));
-    let mut all = globals.chain(holders).chain(in_functions);
-    all.find(Span::is_defined).unwrap_or_default()
 }
 
 /// The name, in GLSL, of something that a version lacks.

@@ -12,6 +12,7 @@
 
 pub mod clip;
 mod columns;
+mod descriptors;
 mod filters;
 pub mod glsl;
 mod gradients;
@@ -43,6 +44,7 @@ pub use reflect::reflect;
 use naga::ShaderStage;
 use naga::back::glsl::Version;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
+use naga::valid::Capabilities;
 
 use lamplight_bundle::{self as bundle, BoundsChecks, Conventions, Language, Native, Target};
 use lamplight_compose::{Composed, Part, PartKind};
@@ -62,6 +64,8 @@ pub struct TargetEntry {
     pub about: &'static str,
     /// The version, if the language is GLSL. [`lacks`] refuses what this version does not have.
     pub glsl: Option<Version>,
+    /// What the language has of what not every target has.
+    pub capabilities: Capabilities,
     /// What lines before the first declaration begin with. Comments need not be listed.
     pub header: &'static [&'static str],
     /// What the language has for overrides.
@@ -156,12 +160,14 @@ pub struct Emitted {
 /// functions that are newer than a target's language.
 ///
 /// # Errors
-/// `override-without-value`, `emit-failed`; in the author's places where `composed` knows them.
+/// `override-without-value`, `emit-failed`, `not-portable`; in the author's places where `composed`
+/// knows them.
 pub fn check_targets(
     composed: &Composed,
     validated: &Validated,
     targets: &[Target],
 ) -> Result<(), Diagnostics> {
+    lacks::check_capabilities(composed, validated, targets)?;
     specialise::check_overrides(composed, validated, targets)?;
     lacks::check_lacks(composed, validated, targets)
 }

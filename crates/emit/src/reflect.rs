@@ -155,7 +155,8 @@ fn make_binding(
 ) -> Option<Binding> {
     let place = variable.binding?;
     let kind = binding_kind(module, variable)?;
-    let ty = &module.types[variable.ty];
+    let element = element_type(module, variable.ty);
+    let ty = &module.types[element];
     let is_buffer = matches!(kind, BindingKind::Uniform | BindingKind::Storage);
     Some(Binding {
         group: place.group,
@@ -164,14 +165,34 @@ fn make_binding(
         name: variable.name.clone().or_else(|| ty.name.clone()).unwrap_or_default(),
         kind,
         ty: type_name(module, variable.ty),
-        size: is_buffer.then(|| layouter[variable.ty].size),
+        count: binding_count(module, variable.ty),
+        size: is_buffer.then(|| layouter[element].size),
         writable: usage.contains(GlobalUse::WRITE),
-        members: if is_buffer { struct_members(module, variable.ty, layouter) } else { Vec::new() },
+        members: if is_buffer { struct_members(module, element, layouter) } else { Vec::new() },
     })
 }
 
+/// The type of what is bound, of one element where it is an array of bindings.
+fn element_type(module: &Module, ty: Handle<Type>) -> Handle<Type> {
+    match module.types[ty].inner {
+        TypeInner::BindingArray { base, size: _ } => base,
+        _ => ty,
+    }
+}
+
+/// The number of bindings of an array of them; 0 if the host decides it.
+pub(super) fn binding_count(module: &Module, ty: Handle<Type>) -> Option<u32> {
+    match module.types[ty].inner {
+        TypeInner::BindingArray { base: _, size } => Some(match size {
+            naga::ArraySize::Constant(size) => size.get(),
+            naga::ArraySize::Pending(_) | naga::ArraySize::Dynamic => 0,
+        }),
+        _ => None,
+    }
+}
+
 pub(super) fn binding_kind(module: &Module, variable: &GlobalVariable) -> Option<BindingKind> {
-    match (variable.space, &module.types[variable.ty].inner) {
+    match (variable.space, &module.types[element_type(module, variable.ty)].inner) {
         (AddressSpace::Uniform, _) => Some(BindingKind::Uniform),
         (AddressSpace::Storage { .. }, _) => Some(BindingKind::Storage),
         (_, TypeInner::Sampler { comparison: true }) => Some(BindingKind::ComparisonSampler),

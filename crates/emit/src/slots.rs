@@ -3,7 +3,7 @@
 use naga::ResourceBinding;
 
 use super::EmitSource;
-use super::reflect::{binding_kind, used_globals};
+use super::reflect::{binding_count, binding_kind, used_globals};
 use lamplight_bundle::{BindingKind, BindingSlot, Native};
 
 /// How a target numbers bindings.
@@ -22,24 +22,35 @@ pub enum Numbering {
 /// [`Numbering::Explicit`] has numbers only for groups and bindings below this.
 pub const EXPLICIT_LIMIT: u32 = 16;
 
-/// Every used binding, sorted, with its kind and its number in the target.
+/// A used binding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct UsedBinding {
+    /// Group and binding.
+    pub place: ResourceBinding,
+    /// What is bound; the elements' kind, for an array of bindings.
+    pub kind: BindingKind,
+    /// How many bindings an array of them has; 0 if the host decides it.
+    pub count: Option<u32>,
+}
+
+/// Every used binding, sorted, with its number in the target.
 pub fn assign_slots(
     source: &EmitSource<'_>,
     numbering: Numbering,
-) -> Vec<(ResourceBinding, BindingKind, Option<u32>)> {
+) -> Vec<(UsedBinding, Option<u32>)> {
     let globals = used_globals(source.module, source.info.get_entry_point(source.index));
-    let mut found: Vec<(ResourceBinding, BindingKind)> = globals
+    let mut found: Vec<UsedBinding> = globals
         .filter_map(|(_, variable)| {
-            Some((variable.binding?, binding_kind(source.module, variable)?))
+            let kind = binding_kind(source.module, variable)?;
+            let count = binding_count(source.module, variable.ty);
+            Some(UsedBinding { place: variable.binding?, kind, count })
         })
         .collect();
     found.sort();
     let mut next = [0; 3];
     found
         .into_iter()
-        .map(|(binding, kind)| {
-            (binding, kind, slot_number(numbering, binding, &mut next[slot_table(kind)]))
-        })
+        .map(|used| (used, slot_number(numbering, used.place, &mut next[slot_table(used)])))
         .collect()
 }
 
@@ -47,10 +58,10 @@ pub fn assign_slots(
 pub fn native_reflection(source: &EmitSource<'_>, entry: &str, numbering: Numbering) -> Native {
     let slots = assign_slots(source, numbering)
         .into_iter()
-        .map(|(binding, _, index)| BindingSlot {
-            group: binding.group,
-            binding: binding.binding,
-            space: (numbering == Numbering::Author).then_some(binding.group),
+        .map(|(UsedBinding { place, kind: _, count: _ }, index)| BindingSlot {
+            group: place.group,
+            binding: place.binding,
+            space: (numbering == Numbering::Author).then_some(place.group),
             index,
             register: None,
             name: None,
@@ -72,8 +83,10 @@ fn slot_number(numbering: Numbering, binding: ResourceBinding, next: &mut u32) -
     }
 }
 
-fn slot_table(kind: BindingKind) -> usize {
-    match kind {
+/// The table of a target that counts by kind. Metal has arrays of bindings in argument buffers.
+fn slot_table(used: UsedBinding) -> usize {
+    match used.kind {
+        _ if used.count.is_some() => 0,
         BindingKind::Uniform | BindingKind::Storage => 0,
         BindingKind::Texture | BindingKind::StorageTexture => 1,
         BindingKind::Sampler | BindingKind::ComparisonSampler => 2,

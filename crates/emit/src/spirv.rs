@@ -16,6 +16,7 @@ pub mod op {
     pub const TYPE_INT: u16 = 21;
     pub const TYPE_IMAGE: u16 = 25;
     pub const TYPE_ARRAY: u16 = 28;
+    pub const TYPE_RUNTIME_ARRAY: u16 = 29;
     pub const TYPE_STRUCT: u16 = 30;
     pub const TYPE_POINTER: u16 = 32;
     pub const CONSTANT: u16 = 43;

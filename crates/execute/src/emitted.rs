@@ -32,7 +32,8 @@ pub fn of_module(
 ) -> Result<(Emitted, Validated), Diagnostic> {
     let info = info_of(module)
         .map_err(|error| executor_failed(format!("the module is not valid: {error}")))?;
-    let validated = Validated { language: Language::Wesl, module: module.clone(), info };
+    let validated =
+        Validated { language: Language::Wesl, module: module.clone(), info, portable: true };
     match link::module_linked(&validated, entry, target, linker) {
         Ok(artifact) => {
             let (bytes, native) = (artifact.bytes.to_vec(), Native::clone(&artifact.native));

@@ -7,7 +7,7 @@ use lamplight_compose::{self as compose, Composed, Keep, Options, lean};
 use lamplight_diagnostic::Diagnostics;
 use lamplight_link::{self as link, CompiledUnit, Linker};
 use lamplight_permute::Settings;
-use lamplight_validate::{naga_stage, on_large_stack, validate, validate_every};
+use lamplight_validate::{naga_stage, on_large_stack, validate_every, validate_for_some};
 
 /// The entry point of every GLSL text.
 const GLSL_ENTRY: &str = "main";
@@ -47,7 +47,7 @@ pub fn entry_points(composed: &Composed) -> Result<Vec<(String, naga::ShaderStag
     }
     // The lean text is what will be compiled. If it is not valid, the author's text shows what is
     // wrong.
-    let validated = validate(&lean(composed)).or_else(|_| validate_every(composed))?;
+    let validated = validate_for_some(&lean(composed)).or_else(|_| validate_every(composed))?;
     let points = validated.module.entry_points.into_iter();
     Ok(points.map(|point| (point.name, point.stage)).collect())
 }

@@ -15,7 +15,7 @@ use lamplight_emit::{self as emit, targets};
 use lamplight_files::limits::GROUP_BYTES;
 use lamplight_glsl::wgsl::Clip;
 use lamplight_validate::{
-    self as validate, Validated, check_glsl, on_large_stack, validate, validate_unguarded,
+    self as validate, Validated, check_glsl, on_large_stack, validate_for_some, validate_unguarded,
 };
 
 /// One text in two forms: as its author reads it, for errors; and without comments and layout,
@@ -145,7 +145,7 @@ fn try_and_validate(
     };
     match validate::try_in_sandbox(text.lean, text.composed, outputs) {
         // The lean text is validated faster. Only the author's text has places for errors.
-        Ok(()) => validate_unguarded(text.lean).or_else(|_| validate(text.composed)),
+        Ok(()) => validate_unguarded(text.lean).or_else(|_| validate_for_some(text.composed)),
         Err(error) if error.code == codes::NAGA_EXHAUSTED => Err(vec![error]),
         // Expanded aliases can make the lean text too large where the author's text is not.
         Err(_) => {
@@ -161,7 +161,7 @@ fn try_and_validate(
 pub fn perform_job(job: &validate::SandboxJob) {
     let composed = Composed::of_text(job.language, job.stage, job.text.clone());
     let Some(outputs) = &job.outputs else {
-        let _ = validate(&composed);
+        let _ = validate_for_some(&composed);
         return;
     };
     let targets: Vec<Target> =
@@ -195,7 +195,9 @@ fn lint_text(text: &TextForms<'_>, targets: &[Target]) -> Result<Diagnostics, Di
     let for_browsers = targets.contains(&Target::WGSL);
     let found = match text.composed.language {
         Language::Wesl => validate::lint_wgsl(text.composed, for_browsers),
-        Language::Glsl => validate::lint(text.composed, &validate(text.composed)?, for_browsers),
+        Language::Glsl => {
+            validate::lint(text.composed, &validate_for_some(text.composed)?, for_browsers)
+        }
     };
     // Browsers refuse some, and a text can make others errors.
     match found.iter().any(|one| one.severity == Severity::Error) {
@@ -211,7 +213,7 @@ fn compile_whole(
     targets: &[Target],
     linker: &Linker<'_>,
 ) -> Result<(Unit, Diagnostics), Diagnostics> {
-    let whole = || validate(text.composed);
+    let whole = || validate_for_some(text.composed);
     let validated = try_and_validate(text, entry, targets, linker)?;
     emit::check_targets(text.lean, &validated, targets)
         .or_else(|_| emit::check_targets(text.composed, &whole()?, targets))?;

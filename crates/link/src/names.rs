@@ -189,5 +189,5 @@ fn trivial_module(name: &str) -> Option<Validated> {
     let init = module.global_expressions.append(one, Span::UNDEFINED);
     module.constants.append(Constant { name: Some(name.to_owned()), ty, init }, Span::UNDEFINED);
     let info = info_unchecked(&module).ok()?;
-    Some(Validated { language: Language::Wesl, module, info })
+    Some(Validated { language: Language::Wesl, module, info, portable: true })
 }

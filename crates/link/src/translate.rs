@@ -107,8 +107,13 @@ fn translate_inner(
     }
     let entry = module.entry_points.first().ok_or(Reason::EntryPoint)?.name.clone();
     let (marked, names) = mark_module(outline, recipe, &module)?;
-    let marked = Validated { language: outline.language, module: marked, info: info.clone() };
-    let validated = Validated { language: outline.language, module, info };
+    let marked = Validated {
+        language: outline.language,
+        module: marked,
+        info: info.clone(),
+        portable: true,
+    };
+    let validated = Validated { language: outline.language, module, info, portable: true };
     let reflection = is_entry.then(|| emit::reflect(&validated, &entry).map(Arc::new));
     let reflection = reflection.transpose().map_err(|_| Reason::Refused)?;
     let parsed = ParsedRecipe { validated, entry, names, marked };

@@ -12,7 +12,7 @@ use lamplight_compose::resolve::wesl::{self, Reductions};
 use lamplight_compose::resolve::{self, Graph, Packages};
 use lamplight_compose::{self as compose, Composed, Keep, Options};
 use lamplight_diagnostic::source::SourceSet;
-use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use lamplight_files::limits::{LINT_FILES, LINT_WHOLE_FILES};
 use lamplight_permute::{Manifest, Settings};
 use lamplight_validate as validate;
@@ -184,7 +184,10 @@ pub fn lint_text(graph: &Graph, composed: &Composed) -> Diagnostics {
     match validate::validate_every(composed) {
         Ok(validated) => {
             let more = graph.own(validate::lint(composed, &validated, false));
-            warnings.into_iter().chain(more).collect()
+            let lacking = validate::lacking(composed, &validated, validate::CAPABILITIES);
+            // A target that is asked for and lacks it is an error of `compile`.
+            let lacking = lacking.map(|error| Diagnostic { severity: Severity::Warning, ..error });
+            warnings.into_iter().chain(more).chain(lacking).collect()
         }
         Err(errors) => {
             let found = match composed.language {

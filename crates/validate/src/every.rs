@@ -5,7 +5,7 @@
 use std::cell::RefCell;
 use std::collections::VecDeque;
 
-use super::{Validated, is_small, read_text, validate};
+use super::{Validated, is_small, read_text, validate_for_some};
 use lamplight_bundle::Language;
 use lamplight_compose::{Composed, PartKind};
 use lamplight_diagnostic::{Code, Diagnostic, Diagnostics, codes};
@@ -20,7 +20,7 @@ const MOST: usize = 20;
 const STOPPING: [&Code; 4] =
     [codes::NAGA_INTERNAL, codes::NAGA_EXHAUSTED, codes::LIMIT_EXCEEDED, codes::NO_ENTRY_POINT];
 
-/// As [`validate`], but continues after the first mistake. This is for a text that is probably
+/// As [`validate_for_some`], but continues after the first mistake. This is for a text that is probably
 /// wrong, since naga runs again for each mistake.
 ///
 /// # Errors
@@ -28,7 +28,7 @@ const STOPPING: [&Code; 4] =
 pub fn validate_every(composed: &Composed) -> Result<Validated, Diagnostics> {
     // A large text is tried in another process, and so would be each of its parts.
     let is_small = is_small(composed).unwrap_or(false);
-    let first = match if is_small { read_text(composed) } else { validate(composed) } {
+    let first = match if is_small { read_text(composed) } else { validate_for_some(composed) } {
         Ok(validated) => return Ok(validated),
         Err(errors) => errors,
     };
@@ -70,7 +70,7 @@ impl MistakeSearch<'_> {
             if was_accepted(&rest) {
                 return true;
             }
-            match validate(&only_needed(self.composed, &needed)) {
+            match validate_for_some(&only_needed(self.composed, &needed)) {
                 Ok(_) => {
                     keep_accepted(rest);
                     return true;
@@ -132,7 +132,9 @@ impl MistakeSearch<'_> {
             if needed.iter().zip(&self.wrong).any(|(needed, wrong)| *needed && *wrong) {
                 continue;
             }
-            let Err(errors) = validate(&only_needed(self.composed, &needed)) else { continue };
+            let Err(errors) = validate_for_some(&only_needed(self.composed, &needed)) else {
+                continue;
+            };
             self.wrong[index] = true;
             self.take_new(errors);
         }

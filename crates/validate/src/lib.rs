@@ -19,6 +19,7 @@ mod sandbox;
 mod sizes;
 mod translated;
 mod uniformity;
+mod uses;
 mod words;
 
 pub use alias::{NamesGlobal, may_alias};
@@ -35,6 +36,8 @@ pub use operands::{
 #[doc(hidden)]
 pub use sandbox::{STAGE, SandboxJob, SandboxOutputs, try_in_sandbox};
 pub use translated::{glsl_as_wgsl, lint_as_wgsl, of_translation, positions_of, translate_glsl};
+pub use uses::first_use;
+pub use words::NOT_EVERY;
 
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationError, ValidationFlags, Validator};
@@ -52,6 +55,8 @@ pub struct Validated {
     pub module: naga::Module,
     /// What naga's validator found out about it.
     pub info: ModuleInfo,
+    /// Whether every target has what the module needs.
+    pub portable: bool,
 }
 
 /// What every target of the crate supports. Sample shading and cube arrays are included, since naga
@@ -62,22 +67,77 @@ pub const CAPABILITIES: Capabilities = Capabilities::MULTISAMPLED_SHADING
     .union(Capabilities::CUBE_ARRAY_TEXTURES)
     .union(Capabilities::SHADER_FLOAT16_IN_FLOAT32);
 
-/// Parses and validates.
+/// What at least one target supports. Each target says in its file what it has of it.
+pub const SOME_TARGET_HAS: Capabilities = CAPABILITIES
+    .union(Capabilities::SHADER_FLOAT16)
+    .union(Capabilities::FLOAT64)
+    .union(Capabilities::SHADER_INT64)
+    .union(Capabilities::CLIP_DISTANCES)
+    .union(Capabilities::DUAL_SOURCE_BLENDING)
+    .union(BINDING_ARRAYS);
+
+/// Arrays of textures, samplers and buffers, with any index.
+pub const BINDING_ARRAYS: Capabilities = Capabilities::TEXTURE_AND_SAMPLER_BINDING_ARRAY
+    .union(Capabilities::TEXTURE_AND_SAMPLER_BINDING_ARRAY_NON_UNIFORM_INDEXING)
+    .union(Capabilities::STORAGE_TEXTURE_BINDING_ARRAY)
+    .union(Capabilities::STORAGE_TEXTURE_BINDING_ARRAY_NON_UNIFORM_INDEXING)
+    .union(Capabilities::BUFFER_BINDING_ARRAY)
+    .union(Capabilities::BUFFER_BINDING_ARRAY_NON_UNIFORM_INDEXING)
+    .union(Capabilities::STORAGE_BUFFER_BINDING_ARRAY)
+    .union(Capabilities::STORAGE_BUFFER_BINDING_ARRAY_NON_UNIFORM_INDEXING);
+
+/// Parses and validates what every target has.
 ///
 /// # Errors
 /// `limit-exceeded` before naga sees the text; `glsl-not-translated` where naga would read it in
 /// another way; `wgsl-error` or `glsl-error` from its parser or validator, in the author's places;
-/// `naga-internal` where it panicked, `naga-exhausted` where it
-/// would have ended the process.
+/// `not-portable` for what only some targets have; `naga-internal` where it panicked,
+/// `naga-exhausted` where it would have ended the process.
 pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
+    let validated = validate_for_some(composed)?;
+    match lacking(composed, &validated, CAPABILITIES) {
+        Some(error) => Err(vec![error]),
+        None => Ok(validated),
+    }
+}
+
+/// Parses and validates what at least one target has. What a target lacks of it is told by
+/// [`lacking`].
+///
+/// # Errors
+/// As [`validate`]; `not-portable` for what no target has.
+pub fn validate_for_some(composed: &Composed) -> Result<Validated, Diagnostics> {
     try_in_sandbox(composed, composed, || None).map_err(|error| vec![error])?;
     read_text(composed)
 }
 
-/// As [`validate`], for a text that went through the sandbox together with what is done to it afterwards.
+/// As [`validate_for_some`], for a text that went through the sandbox together with what is done to it
+/// afterwards.
 pub fn validate_unguarded(composed: &Composed) -> Result<Validated, Diagnostics> {
     limits::check_limits(composed).map_err(|error| vec![error])?;
     read_text(composed)
+}
+
+/// The error about something that a module needs beyond some capabilities, `not-portable`.
+pub fn lacking(
+    composed: &Composed,
+    validated: &Validated,
+    capabilities: Capabilities,
+) -> Option<Diagnostic> {
+    if validated.portable {
+        return None;
+    }
+    let module = &validated.module;
+    let error = with_capabilities(module, ValidationFlags::all(), capabilities).err()?;
+    let error = report::validation_error(composed, module, &error);
+    // naga finds some types that it lacks only where they are converted.
+    Some(match error.code == codes::NOT_PORTABLE {
+        true => error,
+        false => {
+            let message = format!("{NOT_EVERY} the type of this");
+            Diagnostic { code: codes::NOT_PORTABLE, message, notes: Vec::new(), ..error }
+        }
+    })
 }
 
 fn read_text(composed: &Composed) -> Result<Validated, Diagnostics> {
@@ -139,13 +199,16 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
         return Err(vec![inputs_of_compute(composed, name)]);
     }
     store_loop_values(&mut module).map_err(|span| vec![not_carried(composed, span)])?;
-    let info = info_of(&module)
+    let portable = info_of(&module);
+    let is_portable = portable.is_ok();
+    let info = portable
+        .or_else(|_| with_capabilities(&module, ValidationFlags::all(), SOME_TARGET_HAS))
         .map_err(|error| vec![report::validation_error(composed, &module, &error)])?;
     if composed.language == Language::Glsl {
         check_switches(composed, &module, &info)?;
     }
     alias::refuse_aliases(composed, &module).map_err(|error| vec![error])?;
-    Ok(Validated { language: composed.language, module, info })
+    Ok(Validated { language: composed.language, module, info, portable: is_portable })
 }
 
 /// The error about a value that a `continuing` block cannot have.
@@ -163,14 +226,22 @@ fn not_carried(composed: &Composed, span: naga::Span) -> Diagnostic {
 /// naga's error about a module.
 pub type Invalid = Box<naga::WithSpan<ValidationError>>;
 
-/// What naga finds out about a module that it accepts.
+/// What naga finds out about a module that it accepts, and that every target has.
 pub fn info_of(module: &naga::Module) -> Result<ModuleInfo, Invalid> {
-    Validator::new(ValidationFlags::all(), CAPABILITIES).validate(module).map_err(Box::new)
+    with_capabilities(module, ValidationFlags::all(), CAPABILITIES)
 }
 
 /// The same for a module that was made from a valid one: the analysis without the checks.
 pub fn info_unchecked(module: &naga::Module) -> Result<ModuleInfo, Invalid> {
-    Validator::new(ValidationFlags::empty(), CAPABILITIES).validate(module).map_err(Box::new)
+    with_capabilities(module, ValidationFlags::empty(), SOME_TARGET_HAS)
+}
+
+fn with_capabilities(
+    module: &naga::Module,
+    flags: ValidationFlags,
+    capabilities: Capabilities,
+) -> Result<ModuleInfo, Invalid> {
+    Validator::new(flags, capabilities).validate(module).map_err(Box::new)
 }
 
 /// Finds a compute shader with an input that only another stage could give. naga accepts it, and

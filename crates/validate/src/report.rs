@@ -7,7 +7,7 @@ use naga::front::glsl::ErrorKind;
 use naga::front::{glsl, wgsl};
 use naga::valid::ValidationError;
 
-use super::{hints, words};
+use super::{hints, uses, words};
 use lamplight_bundle::Language;
 use lamplight_compose::{Composed, Part};
 use lamplight_diagnostic::source::Span;
@@ -128,8 +128,30 @@ pub fn validation_error(
     let diagnostic = sentence.beside.into_iter().fold(diagnostic, |diagnostic, (span, words)| {
         label_or_note(diagnostic, composed, span.to_range(), &words)
     });
+    let diagnostic = label_use(diagnostic, composed, module, error.as_inner());
     let diagnostic = label_named(diagnostic, composed, error.as_inner());
     sentence.notes.into_iter().fold(diagnostic, Diagnostic::note)
+}
+
+/// Adds a label to a diagnostic about a type without a name: where it is first used.
+fn label_use(
+    diagnostic: Diagnostic,
+    composed: &Composed,
+    module: &Module,
+    error: &ValidationError,
+) -> Diagnostic {
+    let ValidationError::Type { handle, name, source: _ } = error else { return diagnostic };
+    if !diagnostic.labels.is_empty() || !name.is_empty() {
+        return diagnostic;
+    }
+    let span = match module.types[*handle].inner.scalar() {
+        Some(scalar) => uses::first_scalar(module, scalar),
+        None => uses::first_use(module, &|ty| ty == *handle),
+    };
+    match span.to_range().and_then(|range| composed.map.lookup(range)) {
+        Some(place) => diagnostic.at(place, "it is used here"),
+        None => diagnostic,
+    }
 }
 
 /// Adds a label to a diagnostic that has none: at what naga names in the error, or else at the first

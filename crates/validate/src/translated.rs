@@ -8,7 +8,7 @@ use lamplight_glsl::is_for_vulkan;
 use lamplight_glsl::tree::Stage as GlslStage;
 use lamplight_glsl::wgsl::{Clip, Options, Written};
 
-use super::{hints, limits, lint, on_large_stack, validate};
+use super::{hints, limits, lint, on_large_stack, validate_for_some};
 
 /// Stands for the composed text, which is no source of the author's.
 const COMPOSED: SourceId = SourceId(u32::MAX);
@@ -90,7 +90,7 @@ pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnos
 /// As [`glsl_as_wgsl`].
 pub fn lint_as_wgsl(composed: &Composed) -> Result<Diagnostics, Diagnostics> {
     let mut wgsl = glsl_as_wgsl(composed, Clip::Kept)?;
-    let validated = validate(&wgsl)
+    let validated = validate_for_some(&wgsl)
         .map_err(|errors| errors.into_iter().map(of_translation).collect::<Diagnostics>())?;
     let mut found = std::mem::take(&mut wgsl.warnings);
     found.extend(lint(&wgsl, &validated, false));

@@ -17,7 +17,7 @@ use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::input::{ComposedInput, ErrorContext, InputArguments};
 use super::overwrite::Overwrite;
 use crate::bundle::Target;
-use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::generate::{CompiledShader, Root, entry_points};
 use crate::source::SourceSet;
 use files::OutputFile;
@@ -36,6 +36,9 @@ pub struct Arguments {
     target: Vec<TargetChoice>,
     #[command(flatten)]
     conventions: ConventionArguments,
+    /// Fail if one of `all` targets lacks what a shader needs, instead of leaving it out.
+    #[arg(long)]
+    strict: bool,
     /// Compile only this entry point; may be given several times.
     #[arg(long, value_name = "NAME")]
     entry: Vec<String>,
@@ -105,11 +108,13 @@ fn compile_file(
     let root = Root { graph, settings, options, conventions };
     let shaders = entry_points(&composed).and_then(|entries| {
         let entries = chosen_entries(arguments, file, entries)?;
-        root.compile(&entries, targets)
+        compile_able(&root, &entries, targets, &arguments.optional())
     });
     match shaders {
-        Ok(shaders) => {
-            print_warnings(&sources, &shared_warnings(&context, &shaders), form);
+        Ok((shaders, left_out)) => {
+            let mut warnings = context.own(left_out);
+            warnings.extend(shared_warnings(&context, &shaders));
+            print_warnings(&sources, &warnings, form);
             let stem = files::module_stem(file);
             let of = |shader: &CompiledShader| {
                 files::files_of(&stem, shader, targets, arguments.reflection)
@@ -118,6 +123,68 @@ fn compile_file(
         }
         Err(errors) => Err(Failure::Input(sources, context.explain(errors))),
     }
+}
+
+impl Arguments {
+    /// The targets that are left out if they lack what a shader needs.
+    fn optional(&self) -> Vec<Target> {
+        let is_all = self.target.iter().any(|choice| matches!(choice, TargetChoice::All));
+        let is_named = |target: &Target| {
+            let is_it =
+                |choice: &TargetChoice| matches!(choice, TargetChoice::One(one) if one == target);
+            self.target.iter().any(is_it)
+        };
+        let all = Target::ALL.iter().filter(|target| !is_named(target)).copied();
+        if is_all && !self.strict { all.collect() } else { Vec::new() }
+    }
+}
+
+/// Compiles for the targets that have what the entry points need. An optional target that lacks it
+/// is a warning; if all do, the errors are those of the first.
+fn compile_able(
+    root: &Root<'_>,
+    entries: &[(String, naga::ShaderStage)],
+    targets: &[Target],
+    optional: &[Target],
+) -> Result<(Vec<CompiledShader>, Diagnostics), Diagnostics> {
+    let errors = match root.compile(entries, targets) {
+        Ok(shaders) => return Ok((shaders, Vec::new())),
+        Err(errors) if optional.is_empty() || !errors.iter().all(is_of_target) => {
+            return Err(errors);
+        }
+        Err(errors) => errors,
+    };
+    let (mut able, mut left_out) = (Vec::new(), Diagnostics::new());
+    for target in targets {
+        match root.compile(entries, &[*target]) {
+            Ok(_) => able.push(*target),
+            Err(errors) if optional.contains(target) && errors.iter().all(is_of_target) => {
+                left_out.extend(errors.into_iter().map(|error| without_target(*target, error)));
+            }
+            Err(errors) => return Err(errors),
+        }
+    }
+    if able.is_empty() {
+        return Err(errors);
+    }
+    Ok((root.compile(entries, &able)?, left_out))
+}
+
+/// Whether another target might not have an error.
+fn is_of_target(error: &Diagnostic) -> bool {
+    [
+        codes::EMIT_FAILED,
+        codes::NOT_PORTABLE,
+        codes::NON_UNIFORM_BARRIER,
+        codes::OVERRIDE_WITHOUT_VALUE,
+    ]
+    .contains(&error.code)
+}
+
+/// The warning that a target is left out.
+fn without_target(target: Target, error: Diagnostic) -> Diagnostic {
+    Diagnostic { severity: Severity::Warning, ..error }
+        .note(format!("no output for target `{target}` is written; `--strict` makes this an error"))
 }
 
 /// A warning about something that two entry points share is printed once.

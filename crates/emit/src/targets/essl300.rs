@@ -3,6 +3,7 @@
 //! The language has no explicit bindings: look up the names of the reflection with
 //! `glGetUniformBlockIndex` and `glGetUniformLocation`. Coordinates: see [`crate`].
 
+use naga::valid::Capabilities;
 use naga::back::glsl::Version;
 use naga::{Handle, ImageDimension, Type, TypeInner};
 
@@ -20,6 +21,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     binary: false,
     about: "GLSL ES 3.00, for OpenGL ES 3.0 and WebGL 2",
     glsl: Some(VERSION),
+    capabilities: Capabilities::empty(),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
     validation: ValidatorRules { validator: "glslang", rules: &["own", "310 es"] },

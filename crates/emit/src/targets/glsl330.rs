@@ -3,6 +3,7 @@
 //! The language has no explicit bindings: look up the names of the reflection with
 //! `glGetUniformBlockIndex` and `glGetUniformLocation`. Coordinates: see [`crate`].
 
+use naga::valid::Capabilities;
 use naga::back::glsl::Version;
 
 use crate::glsl;
@@ -19,6 +20,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     binary: false,
     about: "GLSL 3.30 core, for OpenGL 3.3",
     glsl: Some(VERSION),
+    capabilities: Capabilities::CLIP_DISTANCES.union(Capabilities::DUAL_SOURCE_BLENDING),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
     validation: ValidatorRules { validator: "glslang", rules: &["own"] },

@@ -4,6 +4,7 @@
 //! the same in every stage and permutation, since GL shares its units between stages.
 //! Coordinates: see [`crate`].
 
+use naga::valid::Capabilities;
 use naga::back::glsl::Version;
 
 use crate::glsl;
@@ -20,6 +21,9 @@ pub const TARGET: TargetEntry = TargetEntry {
     binary: false,
     about: "GLSL 4.50 core, for OpenGL 4.5",
     glsl: Some(VERSION),
+    capabilities: Capabilities::FLOAT64
+        .union(Capabilities::CLIP_DISTANCES)
+        .union(Capabilities::DUAL_SOURCE_BLENDING),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
     validation: ValidatorRules { validator: "glslang", rules: &["own", "vulkan"] },

@@ -7,6 +7,7 @@
 //! the sampler of group N with that binding. Vertex attributes have the semantic `LOC` with the
 //! author's location. All of it is in [`Native`].
 
+use naga::valid::Capabilities;
 use naga::back::hlsl::{
     BindTarget, Options, PipelineOptions, SamplerHeapBindTargets, SamplerIndexBufferKey,
     ShaderModel, Writer,
@@ -15,7 +16,7 @@ use naga::back::hlsl::{
 use crate::names::first_entry_name;
 use crate::plain::{self, Needs};
 use crate::reflect::{binding_kind, entry_inputs};
-use crate::slots::{Numbering, assign_slots, native_reflection};
+use crate::slots::{Numbering, UsedBinding, assign_slots, native_reflection};
 use crate::text::BoundedText;
 use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, setters, zeros};
 use crate::{columns, lists, rename};
@@ -28,6 +29,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     binary: false,
     about: "HLSL, shader model 5.1 (Direct3D 12)",
     glsl: None,
+    capabilities: Capabilities::DUAL_SOURCE_BLENDING.union(TEXTURE_ARRAYS),
     header: &[],
     overrides: Overrides::Macros,
     validation: ValidatorRules { validator: "glslang", rules: &["hlsl"] },
@@ -35,8 +37,18 @@ pub const TARGET: TargetEntry = TargetEntry {
     write,
 };
 
+/// Arrays of textures. naga does not write those of buffers, and it writes the clip distances of a
+/// vertex as one number.
+const TEXTURE_ARRAYS: Capabilities = Capabilities::TEXTURE_AND_SAMPLER_BINDING_ARRAY
+    .union(Capabilities::TEXTURE_AND_SAMPLER_BINDING_ARRAY_NON_UNIFORM_INDEXING)
+    .union(Capabilities::STORAGE_TEXTURE_BINDING_ARRAY)
+    .union(Capabilities::STORAGE_TEXTURE_BINDING_ARRAY_NON_UNIFORM_INDEXING);
+
 /// Elements of each heap, as naga declares them.
 const HEAP_SIZE: u32 = 2048;
+/// A size that stands for none while naga writes: it fails on an array of bindings without a size,
+/// which the language has.
+const UNBOUNDED: u32 = 1_999_999_973;
 /// Register space of the buffers with places in the heaps; the register is the group.
 const INDEX_SPACE: u8 = u8::MAX;
 
@@ -98,6 +110,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let name = first_entry_name(info.entry_point_names)?;
     let text = setters::by_reference(&lists::with_plain_constants(&text.0));
     let text = columns::without_casts(&zeros::without_casts(&text));
+    let text = text.replace(&format!("[{UNBOUNDED}] : register"), "[] : register");
     Ok(Emitted { bytes: text.into_bytes(), native: hlsl_reflection(source, &name, &options) })
 }
 
@@ -109,7 +122,11 @@ fn writer_options(source: &EmitSource<'_>) -> Result<Options, String> {
         force_loop_bounding: source.is_restricted(),
         ..Options::default()
     };
-    for (binding, _, _) in assign_slots(source, Numbering::Author) {
+    for (UsedBinding { place: binding, kind, count }, _) in assign_slots(source, Numbering::Author) {
+        let is_sampler = matches!(kind, BindingKind::Sampler | BindingKind::ComparisonSampler);
+        if count.is_some() && is_sampler {
+            return Err("arrays of samplers have no place in the heap of samplers".to_owned());
+        }
         let space = u8::try_from(binding.group)
             .ok()
             .filter(|space| *space < INDEX_SPACE)
@@ -121,6 +138,7 @@ fn writer_options(source: &EmitSource<'_>) -> Result<Options, String> {
                 space,
                 register: binding.binding,
                 restrict_indexing: source.is_restricted(),
+                binding_array_size: (count == Some(0)).then_some(UNBOUNDED),
                 ..BindTarget::default()
             },
         );
@@ -173,8 +191,8 @@ fn sampler_heaps(source: &EmitSource<'_>, targets: &SamplerHeapBindTargets) -> V
     let heap = |(name, wanted): (&str, BindingKind)| {
         let samplers: Vec<HeapSampler> = used
             .iter()
-            .filter(|(_, kind, _)| *kind == wanted)
-            .map(|(place, ..)| HeapSampler {
+            .filter(|(used, _)| used.kind == wanted)
+            .map(|(UsedBinding { place, kind: _, count: _ }, _)| HeapSampler {
                 group: place.group,
                 binding: place.binding,
                 buffer_register: place.group,

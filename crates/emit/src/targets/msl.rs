@@ -5,14 +5,16 @@
 
 use std::collections::BTreeMap;
 
+use naga::valid::Capabilities;
 use naga::back::msl::{
     BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, Writer,
 };
 
 use crate::names::first_entry_name;
-use crate::slots::{Numbering, assign_slots, native_reflection};
+use crate::slots::{Numbering, UsedBinding, assign_slots, native_reflection};
 use crate::text::BoundedText;
 use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, gradients, rename};
+use lamplight_validate::BINDING_ARRAYS;
 use lamplight_bundle::{BindingKind, BufferSizes, Target};
 
 /// The target, for the table of all.
@@ -22,6 +24,10 @@ pub const TARGET: TargetEntry = TargetEntry {
     binary: false,
     about: "Metal Shading Language 2.0 (macOS 10.13, iOS 11)",
     glsl: None,
+    capabilities: Capabilities::SHADER_FLOAT16
+        .union(Capabilities::CLIP_DISTANCES)
+        .union(Capabilities::DUAL_SOURCE_BLENDING)
+        .union(BINDING_ARRAYS),
     header: &["#", "using "],
     overrides: Overrides::FunctionConstants,
     validation: ValidatorRules { validator: "clang", rules: &[] },
@@ -78,18 +84,23 @@ fn buffer_sizes(source: &EmitSource<'_>, text: &str) -> Option<BufferSizes> {
 
 fn entry_resources(source: &EmitSource<'_>) -> Result<EntryPointResources, String> {
     let mut resources = EntryPointResources::default();
-    for (binding, kind, index) in assign_slots(source, Numbering::PerKind) {
+    for (used, index) in assign_slots(source, Numbering::PerKind) {
         let slot = index
             .and_then(|index| u8::try_from(index).ok())
             .ok_or("more bindings than Metal has slots")?;
-        resources.resources.insert(binding, bind_target(kind, slot));
+        resources.resources.insert(used.place, bind_target(used, slot));
     }
     resources.sizes_buffer = Some(SIZES_BUFFER);
     Ok(resources)
 }
 
-fn bind_target(kind: BindingKind, slot: u8) -> BindTarget {
-    match kind {
+fn bind_target(used: UsedBinding, slot: u8) -> BindTarget {
+    let mutable = matches!(used.kind, BindingKind::Storage | BindingKind::StorageTexture);
+    match used.kind {
+        // An argument buffer has the elements.
+        _ if used.count.is_some() => {
+            BindTarget { buffer: Some(slot), mutable, ..BindTarget::default() }
+        }
         BindingKind::Uniform => BindTarget { buffer: Some(slot), ..BindTarget::default() },
         BindingKind::Storage => {
             BindTarget { buffer: Some(slot), mutable: true, ..BindTarget::default() }

@@ -4,11 +4,13 @@
 //! no source text and no path is. Loops and indices are as written, unless
 //! [`BoundsChecks::Restrict`](lamplight_bundle::BoundsChecks) is asked for.
 
+use naga::valid::Capabilities;
 use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::slots::{Numbering, native_reflection};
 use crate::spirv::{HEADER_WORDS, SpirvInstruction, bytes, instructions, op};
-use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, sample_mask};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, descriptors, sample_mask};
+use lamplight_validate::BINDING_ARRAYS;
 use lamplight_bundle::Target;
 
 /// The target, for the table of all.
@@ -18,6 +20,12 @@ pub const TARGET: TargetEntry = TargetEntry {
     binary: true,
     about: "SPIR-V 1.0 (Vulkan 1.0), little-endian words",
     glsl: None,
+    capabilities: Capabilities::SHADER_FLOAT16
+        .union(Capabilities::FLOAT64)
+        .union(Capabilities::SHADER_INT64)
+        .union(Capabilities::CLIP_DISTANCES)
+        .union(Capabilities::DUAL_SOURCE_BLENDING)
+        .union(BINDING_ARRAYS),
     header: &[],
     overrides: Overrides::Specialised,
     validation: ValidatorRules { validator: "spirv_val", rules: &["vulkan1.0", "vulkan1.1"] },
@@ -38,6 +46,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let words = write_vec(source.module, source.info, &options, Some(&pipeline))
         .map_err(|error| error.to_string())?;
     let words = sample_mask::with_storage_queries(&order_variables(&words));
+    let words = descriptors::with_capabilities(&words);
     let bytes = bytes(&sample_mask::as_arrays(&words)?);
     Ok(Emitted { bytes, native: native_reflection(source, source.entry, Numbering::Author) })
 }

@@ -2,6 +2,7 @@
 //!
 //! Group and binding are the author's; overrides stay overrides.
 
+use naga::valid::Capabilities;
 use naga::back::wgsl::{Writer, WriterFlags};
 
 use crate::slots::{Numbering, native_reflection};
@@ -18,6 +19,9 @@ pub const TARGET: TargetEntry = TargetEntry {
     binary: false,
     about: "WGSL (WebGPU)",
     glsl: None,
+    capabilities: Capabilities::SHADER_FLOAT16
+        .union(Capabilities::CLIP_DISTANCES)
+        .union(Capabilities::DUAL_SOURCE_BLENDING),
     header: &["enable ", "requires ", "diagnostic("],
     overrides: Overrides::Kept,
     validation: ValidatorRules { validator: "naga_tint", rules: &[] },

@@ -52,6 +52,8 @@ struct Uses {
     comparing: BTreeSet<u32>,
     loaded: BTreeSet<u32>,
     stored: BTreeSet<u32>,
+    /// Arrays of textures, samplers and blocks with an index that only an array of bindings takes.
+    indexed: BTreeSet<u32>,
 }
 
 /// Formats of images in GLSL and in WGSL.
@@ -115,7 +117,7 @@ impl Writer<'_> {
     fn plan_global(&mut self, index: u32, uses: &Uses, bindings: &mut Bindings) {
         let var = self.var(index);
         match var.place {
-            Place::UniformBlock | Place::StorageBlock => self.plan_block(index, bindings),
+            Place::UniformBlock | Place::StorageBlock => self.plan_block(index, uses, bindings),
             Place::Uniform => {
                 self.plan_opaque(index, &mut Vec::new(), &var.ty, uses, bindings);
             }
@@ -142,22 +144,22 @@ impl Writer<'_> {
         }
     }
 
-    fn plan_block(&mut self, index: u32, bindings: &mut Bindings) {
+    fn plan_block(&mut self, index: u32, uses: &Uses, bindings: &mut Bindings) {
         let var = self.var(index);
         let uniform = var.place == Place::UniformBlock;
         let packing = var.layout.packing.unwrap_or(Packing::Std140);
         let row_major = var.layout.row_major.unwrap_or(false);
         let rules = Rules { packing, row_major, uniform };
         let (ty, count) = match &var.ty {
-            Type::Array(element, Some(size)) => ((**element).clone(), Some(*size)),
-            Type::Array(..) => {
-                self.refuse(var.at, "an array of blocks has a size in WGSL");
-                return;
+            Type::Array(element, size) if self.is_bound_array(index, *size, uses) => {
+                self.bound_arrays.insert(index, *size);
+                ((**element).clone(), None)
             }
+            Type::Array(element, size) => ((**element).clone(), *size),
             other => (other.clone(), None),
         };
-        if count.is_some_and(|count| count > 64) || matches!(ty, Type::Array(..)) {
-            self.refuse(var.at, "so large an array of blocks is not translated");
+        if matches!(ty, Type::Array(..)) {
+            self.refuse(var.at, "an array of arrays of blocks is not translated");
             return;
         }
         let Some(cell) = self.cell(&ty, rules, var.at) else { return };
@@ -184,10 +186,8 @@ impl Writer<'_> {
         let mut lines = Vec::new();
         for (at, name) in names.into_iter().enumerate() {
             let binding = self.binding(index, &name, at as u32, bindings);
-            lines.push(format!(
-                "@group({group}) @binding({binding}) var<{space}> {name}: {};",
-                cell.text
-            ));
+            let text = self.bound_text(index, &cell.text);
+            lines.push(format!("@group({group}) @binding({binding}) var<{space}> {name}: {text};"));
             self.add_resource(var.name.clone(), name, (group, binding), None);
         }
         self.declarations.insert(index, lines);
@@ -216,6 +216,21 @@ impl Writer<'_> {
         self.facts.resources.push(Resource { name, wgsl, group, binding, sampler });
     }
 
+    /// Whether an array of resources is one of bindings, which not every target has. A smaller one
+    /// whose indices are known is written as a variable for each element.
+    fn is_bound_array(&self, index: u32, size: Option<u32>, uses: &Uses) -> bool {
+        size.is_none_or(|size| size > 64) || uses.indexed.contains(&index)
+    }
+
+    /// The type of a resource, as an array of bindings where the variable is one.
+    fn bound_text(&self, index: u32, element: &str) -> String {
+        match self.bound_arrays.get(&index) {
+            Some(Some(size)) => format!("binding_array<{element}, {size}>"),
+            Some(None) => format!("binding_array<{element}>"),
+            None => element.to_owned(),
+        }
+    }
+
     /// Textures, samplers and images of a variable, in structures and arrays too.
     fn plan_opaque(
         &mut self,
@@ -227,6 +242,14 @@ impl Writer<'_> {
     ) {
         match ty {
             Type::Opaque(opaque) => self.declare_opaque(index, path, opaque, uses, bindings),
+            Type::Array(element, size)
+                if path.is_empty()
+                    && element.is_opaque()
+                    && self.is_bound_array(index, *size, uses) =>
+            {
+                self.bound_arrays.insert(index, *size);
+                self.plan_opaque(index, path, element, uses, bindings);
+            }
             Type::Array(element, Some(size)) if self.shader.has_opaque(element) => {
                 if *size > 64 || self.opaque.len() > 256 {
                     self.refuse(
@@ -290,6 +313,7 @@ impl Writer<'_> {
     ) {
         let var = self.var(index);
         let Some(text) = self.opaque_type(index, opaque, uses) else { return };
+        let text = self.bound_text(index, &text);
         let depth = opaque.shadow || uses.compared.contains(&index);
         let group = var.layout.set.unwrap_or(0);
         let element = self.declarations.get(&index).map_or(0, Vec::len) as u32;
@@ -373,6 +397,7 @@ impl Writer<'_> {
             };
             let name = self.global_name(&format!("{texture}_sampler"));
             let ty = if opaque.shadow { "sampler_comparison" } else { "sampler" };
+            let ty = self.bound_text(key.0, ty);
             let line = format!("@group({group}) @binding({binding}) var {name}: {ty};");
             self.declarations.entry(key.0).or_default().push(line);
             for resource in &mut self.facts.resources {
@@ -388,6 +413,11 @@ impl Writer<'_> {
 
     fn opaque_of(&self, key: &(u32, Vec<u32>)) -> Option<Opaque> {
         let mut ty = self.var(key.0).ty.clone();
+        if self.bound_arrays.contains_key(&key.0)
+            && let Type::Array(element, _) = ty
+        {
+            ty = (*element).clone();
+        }
         for step in &key.1 {
             ty = match ty {
                 Type::Array(element, _) => (*element).clone(),
@@ -473,6 +503,9 @@ impl Writer<'_> {
                     path.push(*member);
                     at = base;
                 }
+                ExprKind::Index(base, index) if self.is_bound(base) => {
+                    return self.bound_element(base, index);
+                }
                 ExprKind::Index(base, index) => {
                     let Some(number) = Self::constant_of(index).and_then(Number::as_size) else {
                         let message = "an array of textures is indexed by constants in WGSL";
@@ -496,6 +529,26 @@ impl Writer<'_> {
         found
     }
 
+    /// Whether a variable is an array of bindings.
+    pub(super) fn is_bound(&self, base: &Expr) -> bool {
+        matches!(base.kind, ExprKind::Var(index) if self.bound_arrays.contains_key(&index))
+    }
+
+    /// An element of an array of bindings.
+    fn bound_element(&mut self, base: &Expr, index: &Expr) -> Option<OpaqueNames> {
+        let ExprKind::Var(var) = base.kind else { return None };
+        let names = self.opaque.get(&(var, Vec::new())).cloned()?;
+        let value = self.value(index);
+        let at = match names.sampler {
+            // The index is written twice.
+            Some(_) => self.kept(index.at, &value),
+            None => value.text,
+        };
+        let element = |name: String| format!("{name}[{at}]");
+        let OpaqueNames { texture, sampler, depth } = names;
+        Some(OpaqueNames { texture: element(texture), sampler: sampler.map(element), depth })
+    }
+
     fn uses(&self) -> Uses {
         let mut uses = Uses::default();
         for function in &self.shader.functions {
@@ -514,6 +567,9 @@ impl Writer<'_> {
                 }
             }
             ExprKind::Texture(access, arguments) => {
+                if !self.is_switched(*access, arguments) {
+                    uses.indexed.extend(open_index(&arguments[0]));
+                }
                 let Some(root) = root_var(&arguments[0]) else { return };
                 match access {
                     Access::Load => uses.loaded.insert(root),
@@ -521,7 +577,17 @@ impl Writer<'_> {
                     _ => false,
                 };
             }
+            ExprKind::Call(_, arguments) => {
+                uses.indexed.extend(arguments.iter().filter_map(open_index))
+            }
+            ExprKind::Index(base, _) if matches!(base.kind, ExprKind::Var(var) if self.is_block(var)) =>
+            {
+                uses.indexed.extend(open_index(expr));
+            }
             ExprKind::Construct(parts) => {
+                if expr.ty.is_opaque() {
+                    uses.indexed.extend(parts.iter().filter_map(open_index));
+                }
                 if let (Type::Opaque(Opaque { shadow: true, .. }), [texture, sampler]) =
                     (&expr.ty, parts.as_slice())
                 {
@@ -531,6 +597,10 @@ impl Writer<'_> {
             }
             _ => {}
         }
+    }
+
+    fn is_block(&self, var: u32) -> bool {
+        matches!(self.place(var), Place::UniformBlock | Place::StorageBlock)
     }
 
     /// A structure of the text.
@@ -721,6 +791,21 @@ fn atomic_root(expr: &Expr) -> Option<(u32, Option<u32>)> {
         ExprKind::Index(base, _) => atomic_root(base),
         ExprKind::Member(base, member) => match base.kind {
             ExprKind::Var(index) => Some((index, Some(*member))),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The array of resources that an expression indexes by what is not known.
+fn open_index(expr: &Expr) -> Option<u32> {
+    match &expr.kind {
+        ExprKind::Index(base, index) if index.known.is_none() => match (&base.kind, &base.ty) {
+            (ExprKind::Var(var), Type::Array(element, _))
+                if element.is_opaque() || matches!(**element, Type::Struct(_)) =>
+            {
+                Some(*var)
+            }
             _ => None,
         },
         _ => None,

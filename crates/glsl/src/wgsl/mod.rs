@@ -116,6 +116,8 @@ pub(crate) struct Writer<'s> {
     stored: memory::Stored,
     /// Textures and samplers by variable and path.
     opaque: BTreeMap<(u32, Vec<u32>), globals::OpaqueNames>,
+    /// Arrays of bindings, with their sizes.
+    bound_arrays: BTreeMap<u32, Option<u32>>,
     /// Texts of declarations of resources, by variable.
     declarations: FxHashMap<u32, Vec<String>>,
     /// Declarations before all others.
@@ -168,6 +170,7 @@ impl<'s> Writer<'s> {
             memory: FxHashMap::default(),
             stored: memory::Stored::default(),
             opaque: BTreeMap::new(),
+            bound_arrays: BTreeMap::new(),
             declarations: FxHashMap::default(),
             preamble: Vec::new(),
             entry: entry::Plan::default(),
@@ -264,6 +267,9 @@ impl<'s> Writer<'s> {
         let mut out = output::Text::default();
         if self.clip_distances {
             out.plain("enable clip_distances;");
+        }
+        if !self.bound_arrays.is_empty() {
+            out.plain("enable wgpu_binding_array;");
         }
         if self.derivatives {
             out.plain("diagnostic(off, derivative_uniformity);");

@@ -79,12 +79,17 @@ impl Writer<'_> {
         if !matches!(self.place(var), Place::UniformBlock | Place::StorageBlock) {
             return None;
         }
+        let mem = self.memory.get(&var).cloned().unwrap_or_else(|| Rc::new(Mem::Value));
+        if self.is_bound(base) {
+            let at = self.index_text(index);
+            let text = format!("{}[{at}]", self.var_name(var));
+            return Some(Path { text, ty: expr.ty.clone(), mem, column: None });
+        }
         let number = index.known.as_deref().and_then(|known| known.first()?.as_size());
         if number.is_none() {
             self.refuse(index.at, "an array of blocks is indexed by constants in WGSL");
         }
         let text = format!("{}_{}", self.var_name(var), number.unwrap_or(0));
-        let mem = self.memory.get(&var).cloned().unwrap_or_else(|| Rc::new(Mem::Value));
         Some(Path { text, ty: expr.ty.clone(), mem, column: None })
     }
 

@@ -24,6 +24,7 @@ impl Writer<'_> {
         let Type::Opaque(opaque) = arguments[0].ty else { return Value::primary("", true) };
         if let ExprKind::Index(base, index) = &arguments[0].kind
             && index.known.is_none()
+            && !self.is_bound(base)
             && let Some(value) = self.indexed_texture(access, (base, index), arguments, expr)
         {
             return value;
@@ -75,6 +76,16 @@ impl Writer<'_> {
         Value::primary(format!("textureLoad({texture}, vec2i({position}.xy), {sample})"), false)
     }
 
+    /// Whether a read of an array's texture by an index that is not constant becomes a `switch`.
+    pub(super) fn is_switched(&self, access: Access, arguments: &[Expr]) -> bool {
+        let ExprKind::Index(base, _) = &arguments[0].kind else { return false };
+        let Type::Array(_, Some(1..=MOST_ELEMENTS)) = base.ty else { return false };
+        let Type::Opaque(opaque) = arguments[0].ty else { return false };
+        let Access::Sample { projected: false, lod, offset: false } = access else { return false };
+        let implicit = lod == Lod::Implicit && self.is_fragment();
+        !(implicit && (opaque.shadow || arguments.len() > 2))
+    }
+
     /// A texture of an array by an index that is not constant: a `switch` over its elements, with
     /// the derivatives taken before it.
     fn indexed_texture(
@@ -84,13 +95,13 @@ impl Writer<'_> {
         arguments: &[Expr],
         expr: &Expr,
     ) -> Option<Value> {
-        let Type::Array(_, Some(size @ 1..=MOST_ELEMENTS)) = base.ty else { return None };
-        let Type::Opaque(opaque) = arguments[0].ty else { return None };
-        let Access::Sample { projected: false, lod, offset: false } = access else { return None };
-        let implicit = lod == Lod::Implicit && self.is_fragment();
-        if implicit && (opaque.shadow || arguments.len() > 2) {
+        if !self.is_switched(access, arguments) {
             return None;
         }
+        let Type::Array(_, Some(size)) = base.ty else { return None };
+        let Type::Opaque(opaque) = arguments[0].ty else { return None };
+        let Access::Sample { lod, .. } = access else { return None };
+        let implicit = lod == Lod::Implicit && self.is_fragment();
         let selector = self.value(index);
         let selector = self.kept(index.at, &selector);
         let mut rest: Vec<Expr> = Vec::new();

@@ -95,13 +95,16 @@ fn inner_type_text(module: &Module, inner: &TypeInner) -> String {
     }
 }
 
+/// How the messages begin about what only some targets have.
+pub const NOT_EVERY: &str = "not every target has";
+
 /// The message for something that needs capabilities which not every target has.
 fn lacking_words(capabilities: Capabilities) -> Sentence {
     let names: Vec<String> =
         capabilities.iter_names().map(|(name, _)| name.to_lowercase().replace('_', " ")).collect();
     Sentence::coded(
         codes::NOT_PORTABLE,
-        format!("not every target has what this needs: {}", names.join(", ")),
+        format!("{NOT_EVERY} what this needs: {}", names.join(", ")),
     )
 }
 

@@ -6,7 +6,7 @@ use naga::valid::{
     WidthError,
 };
 
-use super::{Sentence, entry, foreign_words, lacking_words, type_text};
+use super::{NOT_EVERY, Sentence, entry, foreign_words, lacking_words, type_text};
 use lamplight_diagnostic::codes;
 
 pub fn type_of(module: &Module, name: &str, error: &TypeError) -> Sentence {
@@ -70,7 +70,7 @@ pub fn width_words(error: &WidthError) -> Sentence {
             foreign_words(&format!("numbers of {} bits", u32::from(*bytes) * 8))
         }
         WidthError::MissingCapability { name, .. } => {
-            Sentence::coded(codes::NOT_PORTABLE, format!("not every target has the type `{name}`"))
+            Sentence::coded(codes::NOT_PORTABLE, format!("{NOT_EVERY} the type `{name}`"))
         }
         WidthError::Abstract => {
             Sentence::plain("this number needs a type, such as `1.0f` or `f32(x)`")
