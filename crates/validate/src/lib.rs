@@ -202,7 +202,11 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
     let portable = info_of(&module);
     let is_portable = portable.is_ok();
     let info = portable
-        .or_else(|_| with_capabilities(&module, ValidationFlags::all(), SOME_TARGET_HAS))
+        .or_else(|error| match composed.language {
+            Language::Wesl => info_for_some(&module),
+            // What goes beyond all targets is for the translator to decide.
+            Language::Glsl => Err(error),
+        })
         .map_err(|error| vec![report::validation_error(composed, &module, &error)])?;
     if composed.language == Language::Glsl {
         check_switches(composed, &module, &info)?;
@@ -229,6 +233,11 @@ pub type Invalid = Box<naga::WithSpan<ValidationError>>;
 /// What naga finds out about a module that it accepts, and that every target has.
 pub fn info_of(module: &naga::Module) -> Result<ModuleInfo, Invalid> {
     with_capabilities(module, ValidationFlags::all(), CAPABILITIES)
+}
+
+/// The same for what at least one target has.
+pub fn info_for_some(module: &naga::Module) -> Result<ModuleInfo, Invalid> {
+    with_capabilities(module, ValidationFlags::all(), SOME_TARGET_HAS)
 }
 
 /// The same for a module that was made from a valid one: the analysis without the checks.

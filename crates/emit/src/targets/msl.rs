@@ -57,11 +57,21 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let mut text = BoundedText::default();
     let written = Writer::new(&mut text).write(module, source.info, &options, &pipeline);
     let info = written.map_err(|error| text.explain(error))?;
-    let text = gradients::with_dimensions(&text.0);
+    let text = with_commas(&gradients::with_dimensions(&text.0));
     let name = first_entry_name(info.entry_point_names)?;
     let mut native = native_reflection(source, &name, Numbering::PerKind);
     native.buffer_sizes = buffer_sizes(source, &text);
     Ok(Emitted { bytes: text.into_bytes(), native })
+}
+
+/// The text with a comma between the attributes of a source for blending, as the specification of
+/// the language has it.
+fn with_commas(text: &str) -> String {
+    let one = |line: &str| match line.contains(" [[color(") {
+        true => line.replace(") index(", "), index("),
+        false => line.to_owned(),
+    };
+    text.split_inclusive('\n').map(one).collect()
 }
 
 /// The argument with sizes of buffers, if naga gave the entry point one. It has a member for each

@@ -53,6 +53,7 @@ const KNOWN: &[(&str, AttributeValue, Behind)] = &[
     ("early_fragment_tests", Nothing, Item),
     ("flat", Nothing, Member),
     ("front_facing", Nothing, Parameter),
+    ("index", Number(1), Either),
     ("function_constant", Number(65_535), Item),
     ("instance_id", Nothing, Parameter),
     ("invariant", Nothing, Member),

@@ -9,7 +9,7 @@ use crate::{
     divide_group,
 };
 use lamplight_tools::NODE;
-use lamplight_validate::{guard, info_of};
+use lamplight_validate::{guard, info_for_some};
 
 /// The validator, for the table of all.
 pub const VALIDATOR: ValidatorEntry = ValidatorEntry {
@@ -55,7 +55,7 @@ fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
             let line = error.location(&text).map(|place| place.line_number);
             at_line(line, error.emit_to_string(&text))
         })?;
-        info_of(&module).map(|_| ()).map_err(|error| {
+        info_for_some(&module).map(|_| ()).map_err(|error| {
             let line = error.location(&text).map(|place| place.line_number);
             at_line(line, error.emit_to_string(&text))
         })

@@ -87,9 +87,12 @@ inline unsigned insert(unsigned base, unsigned bits, unsigned offset, unsigned c
 
 namespace metal {
 
-#define __LL_FLOAT1(name, f) __LL_MAP1(float, float, float, name, f)
-#define __LL_FLOAT2(name, f) __LL_MAP2(float, float, float, name, f)
-#define __LL_FLOAT3(name, f) __LL_MAP3(float, float, float, name, f)
+#define __LL_FLOAT1(name, f) \
+  __LL_MAP1(float, float, float, name, f) __LL_MAP1(half, half, half, name, f)
+#define __LL_FLOAT2(name, f) \
+  __LL_MAP2(float, float, float, name, f) __LL_MAP2(half, half, half, name, f)
+#define __LL_FLOAT3(name, f) \
+  __LL_MAP3(float, float, float, name, f) __LL_MAP3(half, half, half, name, f)
 
 __LL_FLOAT1(abs, __builtin_fabsf)
 __LL_FLOAT1(acos, __builtin_acosf)
@@ -199,6 +202,21 @@ __LL_GEOMETRY(float2)
 __LL_GEOMETRY(float3)
 __LL_GEOMETRY(float4)
 
+#define __LL_HALF_GEOMETRY(n)                                                            \
+  inline half dot(half##n a, half##n b) {                                                \
+    float sum = 0.0f;                                                                    \
+    for (int i = 0; i < n; ++i) sum += float(a[i]) * float(b[i]);                        \
+    return half(sum);                                                                    \
+  }                                                                                      \
+  inline half length(half##n a) { return half(__builtin_sqrtf(float(dot(a, a)))); }      \
+  inline half distance(half##n a, half##n b) { return length(a - b); }                   \
+  inline half##n normalize(half##n a) { return a / length(a); }                          \
+  inline half##n reflect(half##n i, half##n m) { return i - half(2.0f * float(dot(m, i))) * m; }
+__LL_HALF_GEOMETRY(2)
+__LL_HALF_GEOMETRY(3)
+__LL_HALF_GEOMETRY(4)
+inline half3 cross(half3 a, half3 b) { return a.yzx * b.zxy - a.zxy * b.yzx; }
+
 // Choices and tests. `select` takes its second value where the condition holds.
 #define __LL_SELECT1(T) \
   inline T select(T a, T b, bool c) { return c ? b : a; }
@@ -212,6 +230,7 @@ __LL_GEOMETRY(float4)
 #define __LL_SELECTS(S, V) \
   __LL_SELECT1(S) __LL_SELECT(V, 2) __LL_SELECT(V, 3) __LL_SELECT(V, 4)
 __LL_SELECTS(float, float)
+__LL_SELECTS(half, half)
 __LL_SELECTS(int, int)
 __LL_SELECTS(uint, uint)
 __LL_SELECTS(bool, bool)
@@ -297,7 +316,8 @@ namespace precise = ::metal;
 
 }  // namespace metal
 
-inline __lamplight::half::operator float() const {
+// What clang calls to convert numbers of 16 bits where the processor does not.
+extern "C" __attribute__((weak)) float __gnu_h2f_ieee(unsigned short bits) {
   const unsigned sign = (bits & 0x8000u) << 16, rest = bits & 0x7fffu;
   if (rest >= 0x7c00u) return __builtin_bit_cast(float, sign | 0x7f800000u | rest << 13);
   // Scaled by a power of two, which is exact for subnormal numbers too.
@@ -305,20 +325,20 @@ inline __lamplight::half::operator float() const {
   return __builtin_bit_cast(float, sign | __builtin_bit_cast(unsigned, scaled));
 }
 
-inline __lamplight::half::half(float value) {
+extern "C" __attribute__((weak)) unsigned short __gnu_f2h_ieee(float value) {
   const unsigned word = __builtin_bit_cast(unsigned, value), magnitude = word & 0x7fffffffu;
   const unsigned short sign = (word >> 16) & 0x8000u;
   if (magnitude > 0x7f800000u) {
-    bits = sign | 0x7e00u;
+    return sign | 0x7e00u;
   } else if (magnitude >= 0x477ff000u) {
     // What rounds beyond the largest half.
-    bits = sign | 0x7c00u;
+    return sign | 0x7c00u;
   } else if (magnitude < 0x38800000u) {
     // Subnormal: adding this number leaves the rounded fraction in the last bits.
     const float placed = __builtin_bit_cast(float, magnitude) + 0x1p-1f;
-    bits = sign | (__builtin_bit_cast(unsigned, placed) - 0x3f000000u);
+    return sign | (__builtin_bit_cast(unsigned, placed) - 0x3f000000u);
   } else {
     const unsigned odd = magnitude >> 13 & 1;
-    bits = sign | ((magnitude - 0x38000000u + 0xfffu + odd) >> 13);
+    return sign | ((magnitude - 0x38000000u + 0xfffu + odd) >> 13);
   }
 }

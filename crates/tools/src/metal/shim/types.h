@@ -37,17 +37,15 @@ __LL_VECTORS(unsigned short, ushort)
 __LL_VECTORS(signed char, char)
 __LL_VECTORS(unsigned char, uchar)
 
+/// A number of 16 bits, which clang computes with by `-fnative-half-type`.
+typedef __fp16 half;
+__LL_VECTORS(half, half)
+inline half operator""h(long double value) { return half(float(value)); }
+inline half operator""h(unsigned long long value) { return half(float(value)); }
+
 namespace __lamplight {
 
 __LL_VECTORS(int, mask)
-
-/// A number of 16 bits: kept and converted, not computed with.
-struct half {
-  unsigned short bits;
-  half() = default;
-  half(float value);
-  operator float() const;
-};
 
 struct bool2;
 struct bool3;
@@ -137,23 +135,6 @@ __LL_3
 __LL_4
 #undef __LL_OF
 
-/// Vectors whose components are no element of clang's vectors.
-struct half2 {
-  half x, y;
-  half operator[](int i) const { return (&x)[i]; }
-  half& operator[](int i) { return (&x)[i]; }
-};
-struct half3 {
-  half x, y, z, unused;
-  half operator[](int i) const { return (&x)[i]; }
-  half& operator[](int i) { return (&x)[i]; }
-};
-struct half4 {
-  half x, y, z, w;
-  half operator[](int i) const { return (&x)[i]; }
-  half& operator[](int i) { return (&x)[i]; }
-};
-
 /// Three components without the fourth's room. It is used as the vector it converts to; swizzles
 /// of it came with Metal 2.1 only.
 template <class Element, class Vector> struct packed3 {
@@ -215,10 +196,6 @@ __LL_OPERATOR(>>)
 using __lamplight::bool2;
 using __lamplight::bool3;
 using __lamplight::bool4;
-using __lamplight::half;
-using __lamplight::half2;
-using __lamplight::half3;
-using __lamplight::half4;
 using __lamplight::packed_float3;
 using __lamplight::packed_int3;
 using __lamplight::packed_uint3;
