@@ -199,7 +199,13 @@ fn shader(
     let graph = resolve::load(&mut sources, packages, root, language).map_err(message_of)?;
     let options = Options::default();
     let composed = compose(&graph, settings, &options).map_err(message_of)?;
-    let root = Root { graph: &graph, settings, options: &options, conventions: Default::default() };
+    let root = Root {
+        graph: &graph,
+        settings,
+        options: &options,
+        conventions: Default::default(),
+        numbers: "",
+    };
     let entries = entry_points(&composed).map_err(message_of)?;
     let shaders = root.compile_with(&entries, &requests.linker).map_err(message_of)?;
     let mut expect = |what: String, bytes: Vec<u8>| {
@@ -365,6 +371,7 @@ fn problems(sources: &mut SourceSet, packages: &Packages) -> Diagnostics {
             settings: &settings,
             options: &options,
             conventions: Default::default(),
+            numbers: "",
         };
         let entries = entry_points(&composed)?;
         root.compile(&entries, &[Target::WGSL])

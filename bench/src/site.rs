@@ -113,7 +113,7 @@ fn of_manifest(manifest: &Manifest, of: &str) -> Result<Settings, Diagnostics> {
 fn compile(graph: &Graph, settings: &Settings, linker: &Linker<'_>) -> Result<(), Diagnostics> {
     let (options, conventions) = (Options::default(), Conventions::default());
     let composed = compose::compose(graph, settings, &options)?;
-    let root = Root { graph, settings, options: &options, conventions };
+    let root = Root { graph, settings, options: &options, conventions, numbers: "" };
     root.compile_with(&entry_points(&composed)?, linker)?;
     linker.forget();
     Ok(())

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::failure::{DiagnosticForm, Failure, print_warnings};
-use super::{features, stream};
+use super::{features, includes, stream};
 use crate::bundle::{Conventions, Language, Stage};
 use crate::compose::{self, Composed, Keep, Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
+use crate::generate;
 use crate::parse::words::is_word;
 use crate::permute::manifest::Features;
 use crate::permute::{Assignment, Program, Quoted, Setting, Settings, key};
@@ -29,6 +30,10 @@ pub struct InputArguments {
     /// The stage of GLSL from standard input, or from a file whose name does not say it.
     #[arg(long, value_enum)]
     stage: Option<StageName>,
+    /// The other stage of the program, in GLSL: locations and bindings that the two files leave open
+    /// are counted over both [default: that of the program in the manifest].
+    #[arg(long, value_name = "FILE")]
+    with: Option<PathBuf>,
     /// Choose an axis's value.
     #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = axis_value)]
     set: Vec<(String, Setting)>,
@@ -37,6 +42,8 @@ pub struct InputArguments {
     feature: Vec<(String, Setting)>,
     #[command(flatten)]
     features: features::Arguments,
+    #[command(flatten)]
+    includes: includes::Arguments,
     /// How imported items are named.
     #[arg(long, value_enum, default_value_t)]
     mangle: MangleName,
@@ -149,6 +156,8 @@ pub struct ErrorContext {
     pub options: Options,
     /// The conventions of the program that the file belongs to, or else the defaults.
     pub conventions: Conventions,
+    /// Lines with the numbers that GLSL leaves open, if the other stage is known.
+    pub numbers: String,
     permutation: Option<String>,
 }
 
@@ -170,10 +179,23 @@ fn of_permutation(diagnostics: Diagnostics, permutation: Option<&str>) -> Diagno
     diagnostics.into_iter().map(one).collect()
 }
 
+/// The path of the stage of a program in GLSL that a file is not.
+fn partner_of(program: &Program, path: &str) -> Option<String> {
+    let glsl = program.glsl.as_ref()?;
+    let stages = [&glsl.vertex, &glsl.fragment].map(|file| file.as_ref().map(|file| &file.path));
+    match stages {
+        [Some(vertex), Some(fragment)] if vertex == path => Some(fragment.clone()),
+        [Some(vertex), Some(fragment)] if fragment == path => Some(vertex.clone()),
+        _ => None,
+    }
+}
+
 /// The settings of a composition, as chosen.
 struct ChosenSettings {
     settings: Settings,
     conventions: Conventions,
+    /// The path of the other stage in GLSL.
+    partner: Option<String>,
     /// The text of a note that names the chosen settings.
     permutation: Option<String>,
     /// Whether the axes come from a manifest.
@@ -198,7 +220,7 @@ impl InputArguments {
         let mut project =
             opened.map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
         let path = if stream::is_stream(file) {
-            let name = stream::stream_name(language, self.stage.map(Stage::from));
+            let name = stream::stream_name(language, self.stage());
             let text = stream::read_stream(file)?;
             let below = project.packages.root.files;
             project.packages.root.files =
@@ -238,9 +260,18 @@ impl InputArguments {
         path: &str,
         language: Language,
     ) -> Result<(Composed, ErrorContext), Diagnostics> {
+        self.includes.apply(&mut project.packages)?;
         let mut chosen = self.settings(project, root, path)?;
         let graph = resolve::load(&mut project.sources, &project.packages, path, language)?;
         let options = self.options();
+        let partner = match &self.with {
+            Some(file) => Some(project::relative(file, root).map_err(|error| vec![error])?),
+            None => chosen.partner.take(),
+        };
+        let numbers = match partner {
+            Some(partner) => self.numbers(project, &graph, path, &partner)?,
+            None => String::new(),
+        };
         let mut composed = compose::compose(&graph, &chosen.settings, &options)
             .map_err(|errors| of_permutation(errors, chosen.permutation.as_deref()))?;
         chosen.warnings.extend(self.unused(&graph, &chosen.axes));
@@ -251,12 +282,50 @@ impl InputArguments {
         composed.warnings = project.packages.warnings.clone();
         composed.warnings.append(&mut chosen.warnings);
         let ChosenSettings { settings, conventions, permutation, .. } = chosen;
-        Ok((composed, ErrorContext { graph, settings, options, conventions, permutation }))
+        let context = ErrorContext { graph, settings, options, conventions, numbers, permutation };
+        Ok((composed, context))
+    }
+
+    /// The numbers of a file that it leaves open, counted over it and the other stage.
+    fn numbers(
+        &self,
+        project: &mut Project,
+        graph: &Graph,
+        path: &str,
+        partner: &str,
+    ) -> Result<String, Diagnostics> {
+        let refuse = |message: String| Err(vec![Diagnostic::error(codes::UNKNOWN_STAGE, message)]);
+        let stage = self.stage().or_else(|| compose::glsl::named_stage(path));
+        let other = match (graph, stage) {
+            (Graph::Glsl(_), Some(Stage::Vertex)) => Stage::Fragment,
+            (Graph::Glsl(_), Some(Stage::Fragment)) => Stage::Vertex,
+            _ => {
+                return refuse(format!(
+                    "`{path}` is no vertex or fragment shader in GLSL, and has no other stage"
+                ));
+            }
+        };
+        if compose::glsl::named_stage(partner).is_some_and(|stage| stage != other) {
+            return refuse(format!("`{partner}` has the same stage as `{path}`"));
+        }
+        let partner =
+            resolve::load(&mut project.sources, &project.packages, partner, Language::Glsl)?;
+        let [vertex, fragment] = match other {
+            Stage::Fragment => generate::program_numbers(Some(graph), Some(&partner)),
+            _ => generate::program_numbers(Some(&partner), Some(graph)),
+        };
+        Ok(if other == Stage::Fragment { vertex } else { fragment })
+    }
+
+    /// The stage that is asked for.
+    fn stage(&self) -> Option<Stage> {
+        let wrapped = self.includes.wraps().then_some(Stage::Fragment);
+        self.stage.map(Stage::from).or(wrapped)
     }
 
     /// Whether the language of a text is told.
     pub fn names_language(&self) -> bool {
-        self.lang.is_some() || self.stage.is_some()
+        self.lang.is_some() || self.stage().is_some()
     }
 
     /// The language asked for.
@@ -269,7 +338,7 @@ impl InputArguments {
         let extension = file.extension().unwrap_or_default().to_string_lossy();
         match (self.lang, &*extension) {
             (Some(name), _) => Ok(name.into()),
-            (None, _) if self.stage.is_some() => Ok(Language::Glsl),
+            (None, _) if self.stage().is_some() => Ok(Language::Glsl),
             (None, "glsl") => Ok(Language::Glsl),
             (None, _) if compose::glsl::named_stage(&file.to_string_lossy()).is_some() => {
                 Ok(Language::Glsl)
@@ -315,7 +384,7 @@ impl InputArguments {
             MangleName::Underscore => Mangle::Underscore,
         };
         let keep = if self.keep_all { Keep::All } else { Keep::EntryPoints };
-        Options { mangle, keep, stage: self.stage.map(Stage::from) }
+        Options { mangle, keep, stage: self.stage() }
     }
 
     /// The settings from the command line, and the defaults of the program that the file belongs
@@ -333,7 +402,9 @@ impl InputArguments {
         match program {
             Some(program) => {
                 let features = manifest.as_ref().map(|manifest| &manifest.features);
-                self.of_program(program, features, &mut project.sources)
+                let mut chosen = self.of_program(program, features, &mut project.sources)?;
+                chosen.partner = partner_of(program, path);
+                Ok(chosen)
             }
             None => self.free(root, &mut project.sources),
         }
@@ -361,6 +432,7 @@ impl InputArguments {
         Ok(ChosenSettings {
             settings,
             conventions: Conventions::default(),
+            partner: None,
             permutation,
             declared: false,
             axes: Vec::new(),
@@ -398,6 +470,15 @@ impl InputArguments {
         ));
         let axes = program.space.axes().iter().map(|axis| axis.name.clone()).collect();
         let (conventions, warnings) = (program.conventions, broken.chain(both).collect());
-        Ok(ChosenSettings { settings, conventions, permutation, declared: true, axes, warnings })
+        let partner = None;
+        Ok(ChosenSettings {
+            settings,
+            conventions,
+            partner,
+            permutation,
+            declared: true,
+            axes,
+            warnings,
+        })
     }
 }

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, print_warnings};
-use super::features;
 use super::input::{self, parse_feature};
+use super::{features, includes};
 use crate::cli::terminal::stdout;
 use crate::diagnostic::{Diagnostics, Severity};
 use crate::generate::summary::counted_words;
@@ -29,6 +29,8 @@ pub struct Arguments {
     feature: Vec<(String, Setting)>,
     #[command(flatten)]
     features: features::Arguments,
+    #[command(flatten)]
+    includes: includes::Arguments,
 }
 
 pub fn run_lint(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
@@ -42,7 +44,8 @@ pub fn run_lint(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failur
     let mut last = SourceSet::default();
     for (root, paths) in packages_of(&arguments.path)? {
         let mut sources = SourceSet::default();
-        let found = match lint_package(&root, &paths, &settings, &mut sources) {
+        let found = match lint_package(&root, &paths, &settings, &arguments.includes, &mut sources)
+        {
             Ok(found) => found,
             Err(diagnostics) => lint::Linted { diagnostics, modules: 0 },
         };
@@ -94,9 +97,11 @@ fn lint_package(
     root: &Path,
     requested: &[PathBuf],
     settings: &Settings,
+    includes: &includes::Arguments,
     sources: &mut SourceSet,
 ) -> Result<lint::Linted, Diagnostics> {
-    let packages = project::packages(root, sources)?;
+    let mut packages = project::packages(root, sources)?;
+    includes.apply(&mut packages)?;
     let manifest = project::manifest(root, sources)?;
     let mut settings = settings.clone();
     if manifest.is_none() {

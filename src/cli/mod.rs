@@ -19,6 +19,7 @@ mod failure;
 mod features;
 mod generate;
 mod guide;
+mod includes;
 mod init;
 mod input;
 mod keys;

@@ -12,6 +12,7 @@ use super::terminal::write_data;
 use crate::bundle::{Language, SourceClip};
 use crate::compose::Composed;
 use crate::diagnostic::codes;
+use crate::generate::add_numbers;
 use crate::glsl::wgsl::Written;
 use crate::source::SourceSet;
 use crate::validate::{positions_of, translate_glsl};
@@ -42,7 +43,8 @@ enum TargetLanguage {
 
 pub fn run_translate(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let TargetLanguage::Wgsl = arguments.to;
-    let ready = arguments.input.compose(&arguments.file, SourceSet::default(), form)?;
+    let mut ready = arguments.input.compose(&arguments.file, SourceSet::default(), form)?;
+    add_numbers(&mut ready.composed, &ready.context.numbers);
     let (Language::Glsl, Some(stage)) = (ready.composed.language, ready.composed.stage) else {
         return Err(Failure::usage("only GLSL is translated to WGSL"));
     };

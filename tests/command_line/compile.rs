@@ -7,6 +7,10 @@ use super::{Case, Outcome};
 
 pub const CASES: &[Case] = &[
     ("stages_have_files_of_their_own", stages),
+    ("targets_that_can", targets_that_can),
+    ("both_stages_of_a_program", both_stages),
+    ("include_folders_and_definitions", include_folders),
+    ("wrapped_shaders", wrapped),
     ("several_inputs", several_inputs),
     ("entry_points_by_name", entry_points),
     ("reflection_of_a_shader", reflection),
@@ -38,6 +42,126 @@ fn stages() -> Outcome {
     equal(fs::read_dir(package.path("out"))?.flatten().filter(is_output).count(), 14)?;
     for name in ["lit.main.frag.spv", "lit.main.vert.spv", "lit.main.essl300.frag"] {
         fs::metadata(package.path("out").join(name)).map_err(|_| format!("no {name}"))?;
+    }
+    Ok(())
+}
+
+/// `--target all` leaves out what a target lacks. A target by name, or `--strict`, does not.
+fn targets_that_can() -> Outcome {
+    const HALF: &str = "enable f16;
+@fragment fn fs_main(@location(0) x: f32) -> @location(0) vec4f { return vec4f(vec4<f16>(f16(x))); }
+";
+    let package = Package::new(&[("half.wesl", HALF)])?;
+    let done = package.run("compile half.wesl --target all -o out")?;
+    done.ends(0)?.says(&[
+        "target `hlsl` does not have the type `f16`",
+        "no output for target `glsl330` is written",
+    ])?;
+    let mut found: Vec<String> = fs::read_dir(package.path("out"))?
+        .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
+        .collect::<Result<_, std::io::Error>>()?;
+    found.sort();
+    let wanted = ["half.fs_main.frag.metal", "half.fs_main.frag.spv", "half.fs_main.frag.wgsl"];
+    found.retain(|name| name.starts_with("half"));
+    equal(found, wanted.map(str::to_owned).to_vec())?;
+    package.run("compile half.wesl --target all --strict -o out")?.ends(1)?;
+    package.run("compile half.wesl --target all,hlsl -o out")?.ends(1)?;
+    package.run("compile half.wesl --target msl -o out --force")?.ends(0)?;
+    Ok(())
+}
+
+/// What goes from one stage to the next has one location, however the files order it. The manifest
+/// and `--with` say the same.
+fn both_stages() -> Outcome {
+    let vertex = "#version 330
+in vec3 at; out vec2 uv; out vec3 normal; uniform mat4 model;
+void main() { uv = at.xy; normal = at; gl_Position = model * vec4(at, 1.0); }
+";
+    let fragment = "#version 330
+in vec3 normal;
+#if GREY
+in float grey;
+#endif
+in vec2 uv; out vec4 color; uniform float level;
+void main() { color = vec4(normal * level, uv.x); }
+";
+    let manifest = "[program.lit]
+glsl = { vertex = \"lit.vert\", fragment = \"lit.frag\" }
+targets = [\"wgsl\"]
+axis.grey = { values = [false, true] }
+";
+    let files = [("lit.vert", vertex), ("lit.frag", fragment)];
+    let alone = Package::new(&files)?;
+    let declared = Package::new(&[&files[..], &[("lamplight.toml", manifest)]].concat())?;
+    let with_partner = [
+        alone.run("compile lit.vert --with lit.frag --feature grey --target wgsl")?,
+        alone.run("compile lit.frag --with lit.vert --feature grey --target wgsl")?,
+    ];
+    for (name, compiled) in ["lit.vert", "lit.frag"].into_iter().zip(&with_partner) {
+        equal((name, compiled.code), (name, 0))?;
+        let text = &compiled.out;
+        for wanted in ["@location(0) uv: vec2<f32>", "@location(1) normal: vec3<f32>"] {
+            equal((wanted, text.contains(wanted)), (wanted, true))?;
+        }
+        let of_manifest = declared.run(&format!("compile {name} --feature grey --target wgsl"))?;
+        equal(&of_manifest.ends(0)?.out, text)?;
+    }
+    let block =
+        |text: String| text.lines().find(|line| line.contains("@binding")).map(str::to_owned);
+    let blocks = with_partner.map(|compiled| block(compiled.out));
+    equal(blocks, ["0", "1"].map(|at| Some(format!("@group(0) @binding({at}) "))))?;
+    declared.run("gen -o bundle")?.ends(0)?;
+    alone
+        .run("compile lit.frag --with lit.frag --target wgsl")?
+        .ends(1)?
+        .says(&["the same stage"])?;
+    Ok(())
+}
+
+/// `-I` and `-D`, in each command that reads shaders.
+fn include_folders() -> Outcome {
+    let shader = "#version 450
+#include \"tint.glsl\"
+layout(location = 0) out vec4 c;
+#ifdef DARK
+void main() { c = tint() * 0.25; }
+#else
+void main() { c = tint(); }
+#endif
+";
+    let tint = "vec4 tint() { return vec4(RED, 0.0, 0.0, 1.0); }\n";
+    let package = Package::new(&[("in/a.frag", shader), ("common/tint.glsl", tint)])?;
+    package.run("compile in/a.frag --target wgsl")?.ends(1)?.says(&["cannot find `tint.glsl`"])?;
+    let compiled = package.run("compile in/a.frag -I common -D RED=0.5 -D DARK --target wgsl")?;
+    let compiled = compiled.ends(0)?.out;
+    for wanted in ["vec4<f32>(0.5f, 0f, 0f, 1f)", "* 0.25f"] {
+        equal((wanted, compiled.contains(wanted)), (wanted, true))?;
+    }
+    package.run("lint in/a.frag -I common -D RED=0.5")?.ends(0)?;
+    package.run("compose in/a.frag -I common -DRED=0.5")?.ends(0)?;
+    package.run("lint in/a.frag -I common")?.ends(1)?.says(&["`RED`"])?;
+    package
+        .run("compile in/a.frag -I nowhere --target wgsl")?
+        .ends(1)?
+        .says(&["cannot read `nowhere`"])?;
+    Ok(())
+}
+
+/// What a site's visitors write is part of a shader only.
+fn wrapped() -> Outcome {
+    let shader = "void mainImage(out vec4 color, in vec2 at) {
+    color = vec4(at / iResolution.xy, sin(iTime), 1.0) * texture(iChannel1, at);
+}
+";
+    let package = Package::new(&[("toy.glsl", shader)])?;
+    package.run("compile toy.glsl --target all -o out")?.ends(1)?.says(&["--stage"])?;
+    let all = package.run("compile toy.glsl --wrap shadertoy --target all -o out")?;
+    all.ends(0)?;
+    let is_toy = |entry: &fs::DirEntry| entry.file_name().to_string_lossy().starts_with("toy.");
+    equal(fs::read_dir(package.path("out"))?.flatten().filter(is_toy).count(), 7)?;
+    let text = package.run("compile toy.glsl --wrap shadertoy --target wgsl")?.out;
+    for (word, is_there) in [("iTime", true), ("iChannel1", true), ("iMouse", false)] {
+        equal((word, text.contains(word)), (word, is_there))?;
     }
     Ok(())
 }

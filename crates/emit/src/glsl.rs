@@ -57,10 +57,7 @@ pub fn write_glsl(
         bounds_policies(source, version),
     )
     .and_then(|mut writer| writer.write());
-    let mut info = written.map_err(|error| match error {
-        naga::back::glsl::Error::MissingFeatures(features) => missing_words(features),
-        error => text.explain(error),
-    })?;
+    let mut info = written.map_err(|error| in_words(&text, &error))?;
     // naga omits the prefix of this one extension's name, and no driver knows it without.
     let mut text = with_mask_elements(text.0.replacen("#extension ARB_", "#extension GL_ARB_", 1));
     if defined.is_some() {
@@ -171,6 +168,14 @@ fn writer_options(
         }
     }
     Ok(options)
+}
+
+/// What naga's writer says, in words.
+fn in_words(text: &BoundedText, error: &naga::back::glsl::Error) -> String {
+    match error {
+        naga::back::glsl::Error::MissingFeatures(features) => missing_words(*features),
+        error => text.explain(error),
+    }
 }
 
 /// What a version of the language lacks, in words.

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::compile::Compiled;
 use super::entry::ShaderEntry;
 use super::lint::Decided;
+use super::shader::add_numbers;
 use super::{Progress, REPORTED};
 use lamplight_bundle::{Digest, Hash, Language, Target};
 use lamplight_compose::{self as compose, Composed, Leaner};
@@ -179,9 +180,11 @@ impl<'a> EntryState<'a> {
             return Ok(FoundText::Known(*text));
         }
         let composed = compose::compose(&self.entry.graph, settings, &self.entry.options);
-        let composed =
+        let mut composed =
             composed.map_err(|errors| of_permutation(errors, self.entry, &space.key(point)))?;
-        let lean = self.leaner.lean(&composed);
+        let mut lean = self.leaner.lean(&composed);
+        add_numbers(&mut composed, &self.entry.numbers);
+        add_numbers(&mut lean, &self.entry.numbers);
         let mut hash = [0; 16];
         hash.copy_from_slice(&blake3::hash(lean.text.as_bytes()).as_bytes()[..16]);
         Ok(FoundText::Text { text: Box::new(ComposedForms { composed, lean }), hash })

@@ -24,6 +24,8 @@ pub struct ShaderEntry {
     /// The graph that has it. GLSL has one entry point in a file, so one graph for each.
     pub graph: Arc<Graph>,
     pub options: Options,
+    /// Lines for the end of its texts, with the numbers that GLSL leaves open.
+    pub numbers: String,
 }
 
 /// Every entry point of a program: those of the WESL root, then one for each GLSL stage.
@@ -41,7 +43,29 @@ pub fn entries(
         let found = of_file(sources, packages, program, point, (file, language), &mut entries);
         errors.extend(found.err().into_iter().flatten());
     }
-    if errors.is_empty() { Ok(entries) } else { Err(errors) }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    number_stages(&mut entries);
+    Ok(entries)
+}
+
+/// Gives the two stages of a program in GLSL numbers that fit each other.
+fn number_stages(entries: &mut [ShaderEntry]) {
+    let is_glsl = |entry: &&ShaderEntry| entry.language == Language::Glsl;
+    let graph_of = |stage: naga::ShaderStage| {
+        let mut found = entries.iter().filter(is_glsl);
+        found.find(|entry| entry.stage == stage).map(|entry| entry.graph.clone())
+    };
+    let stages = [naga::ShaderStage::Vertex, naga::ShaderStage::Fragment];
+    let graphs = stages.map(graph_of);
+    let [vertex, fragment] = graphs.each_ref().map(Option::as_deref);
+    let numbers = shader::program_numbers(vertex, fragment);
+    for entry in entries.iter_mut().filter(|entry| entry.language == Language::Glsl) {
+        if let Some(at) = stages.iter().position(|stage| *stage == entry.stage) {
+            entry.numbers.clone_from(&numbers[at]);
+        }
+    }
 }
 
 /// Adds the entry points of one root file.
@@ -71,7 +95,17 @@ fn of_file(
         let options = Options { keep, ..Options::default() };
         let label = entry_label(entries, language, &name, stage);
         let (program, graph) = (program.name.clone(), graph.clone());
-        entries.push(ShaderEntry { program, language, name, label, stage, graph, options });
+        let numbers = String::new();
+        entries.push(ShaderEntry {
+            program,
+            language,
+            name,
+            label,
+            stage,
+            graph,
+            options,
+            numbers,
+        });
     }
     Ok(())
 }

@@ -36,7 +36,7 @@ mod trace;
 mod validation;
 
 pub use permutation::{Permutation, ShaderName, permutation};
-pub use shader::{CompiledShader, Root, entry_points};
+pub use shader::{CompiledShader, Root, add_numbers, entry_points, program_numbers};
 pub use shard::Shard;
 pub use sink::{Discard, MemorySink, Sink};
 pub use stamp::Look;

@@ -32,6 +32,15 @@ pub struct Root<'a> {
     pub options: &'a Options,
     /// The clip space and the checks of its outputs.
     pub conventions: Conventions,
+    /// What [`program_numbers`] gives for its stage; empty for a file alone.
+    pub numbers: &'a str,
+}
+
+/// Lines for the end of the texts of a vertex and of a fragment shader in GLSL, with the numbers
+/// that their files leave open.
+pub fn program_numbers(vertex: Option<&Graph>, fragment: Option<&Graph>) -> [String; 2] {
+    let [vertex, fragment] = [vertex, fragment].map(module_texts);
+    lamplight_glsl::number_program(&vertex, &fragment)
 }
 
 /// Name and stage of each entry point of a composed root.
@@ -95,8 +104,10 @@ impl Root<'_> {
             keep: kept_items(self.graph, self.options, entry),
             stage: self.options.stage,
         };
-        let composed = compose::compose(self.graph, self.settings, &options)?;
-        let lean = lean(&composed);
+        let mut composed = compose::compose(self.graph, self.settings, &options)?;
+        let mut lean = lean(&composed);
+        add_numbers(&mut composed, self.numbers);
+        add_numbers(&mut lean, self.numbers);
         link::compile(
             &link::TextForms { composed: &composed, lean: &lean },
             entry,
@@ -104,6 +115,22 @@ impl Root<'_> {
             linker,
         )
     }
+}
+
+/// The texts of the files of a graph, the root first.
+fn module_texts(graph: Option<&Graph>) -> Vec<&str> {
+    match graph {
+        Some(Graph::Glsl(graph)) => graph.modules.iter().map(|module| &*module.text).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Adds lines to the end of a text.
+pub fn add_numbers(composed: &mut Composed, numbers: &str) {
+    if !numbers.is_empty() && !composed.text.ends_with('\n') {
+        composed.text.push('\n');
+    }
+    composed.text.push_str(numbers);
 }
 
 /// What the text of one entry point keeps. A GLSL file has only one entry point, which needs no

@@ -11,11 +11,13 @@ pub mod check;
 mod dialect;
 pub mod lexer;
 pub mod parse;
+mod program;
 pub mod tree;
 pub mod types;
 pub mod wgsl;
 
 pub use dialect::is_for_vulkan;
+pub use program::{is_numbered, number_program};
 
 use lamplight_diagnostic::Diagnostics;
 use lamplight_diagnostic::source::SourceId;

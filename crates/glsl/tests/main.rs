@@ -3,6 +3,7 @@
 mod damaged;
 mod interface;
 mod messages;
+mod programs;
 
 use std::path::Path;
 
@@ -13,7 +14,7 @@ use lamplight_testing::{run_tests, snapshot};
 use libtest_mimic::{Failed, Trial};
 
 fn main() -> std::process::ExitCode {
-    run_tests(&[translated, messages::tests, interface::tests, damaged::tests])
+    run_tests(&[translated, messages::tests, interface::tests, damaged::tests, programs::tests])
 }
 
 /// The folder of texts whose translation is recorded.

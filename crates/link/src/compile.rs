@@ -48,7 +48,7 @@ pub fn compile(
     linker: &Linker<'_>,
 ) -> Result<CompiledUnit, Diagnostics> {
     let clip = positions_of(text.composed, linker.conventions);
-    if clip != Clip::Kept {
+    if clip != Clip::Kept || lamplight_glsl::is_numbered(&text.composed.text) {
         return compile_translated(text, clip, entry, targets, linker);
     }
     match compile_text(text, entry, targets, linker) {

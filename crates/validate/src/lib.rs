@@ -134,10 +134,26 @@ pub fn lacking(
     Some(match error.code == codes::NOT_PORTABLE {
         true => error,
         false => {
-            let message = format!("{NOT_EVERY} the type of this");
+            let what =
+                lacking_scalar(module, capabilities).unwrap_or("the type of this".to_owned());
+            let message = format!("{NOT_EVERY} {what}");
             Diagnostic { code: codes::NOT_PORTABLE, message, notes: Vec::new(), ..error }
         }
     })
+}
+
+/// The first type of numbers that a module uses, beyond some capabilities.
+fn lacking_scalar(module: &naga::Module, capabilities: Capabilities) -> Option<String> {
+    let scalars = [
+        ("f16", naga::Scalar::F16, Capabilities::SHADER_FLOAT16),
+        ("f64", naga::Scalar::F64, Capabilities::FLOAT64),
+        ("i64", naga::Scalar::I64, Capabilities::SHADER_INT64),
+        ("u64", naga::Scalar::U64, Capabilities::SHADER_INT64),
+    ];
+    let mut lacking = scalars.into_iter().filter(|(_, _, needed)| !capabilities.contains(*needed));
+    let (name, _, _) =
+        lacking.find(|(_, scalar, _)| uses::first_scalar(module, *scalar).is_defined())?;
+    Some(format!("the type `{name}`"))
 }
 
 fn read_text(composed: &Composed) -> Result<Validated, Diagnostics> {

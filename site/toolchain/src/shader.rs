@@ -228,7 +228,7 @@ fn shaders(
     composed: &Composed,
     wanted: &[Target],
 ) -> Result<Vec<CompiledShader>, Diagnostics> {
-    let root = Root { graph, settings, options, conventions };
+    let root = Root { graph, settings, options, conventions, numbers: "" };
     let mut entries = entry_points(composed)?;
     if let Some(wanted) = &request.entry {
         entries.retain(|(name, _)| name == wanted);

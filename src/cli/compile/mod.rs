@@ -105,7 +105,8 @@ fn compile_file(
     let ComposedInput { sources, composed, context } = ready;
     let ErrorContext { graph, settings, options, .. } = &context;
     let conventions = arguments.conventions.chosen().or(context.conventions);
-    let root = Root { graph, settings, options, conventions };
+    let numbers = context.numbers.as_str();
+    let root = Root { graph, settings, options, conventions, numbers };
     let shaders = entry_points(&composed).and_then(|entries| {
         let entries = chosen_entries(arguments, file, entries)?;
         compile_able(&root, &entries, targets, &arguments.optional())

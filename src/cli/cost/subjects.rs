@@ -127,7 +127,7 @@ fn file_subjects(
         arguments.input.compose(file, SourceSet::default(), form)?;
     let ErrorContext { graph, settings, options, .. } = &context;
     let conventions = arguments.conventions.chosen().or(context.conventions);
-    let root = Root { graph, settings, options, conventions };
+    let root = Root { graph, settings, options, conventions, numbers: &context.numbers };
     let of_sources = |errors| Failure::Input(sources.clone(), context.explain(errors));
     let entries = entry_points(&composed).map_err(of_sources)?;
     if entries.is_empty() {

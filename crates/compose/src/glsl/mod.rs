@@ -80,7 +80,8 @@ fn warn_unversioned(
     keep: &Keep,
 ) -> Option<Diagnostic> {
     let is_part = matches!(keep, Keep::Items(_) | Keep::Root);
-    if preprocessed.version.is_some() || is_part {
+    // What is wrapped is of a site that chooses the version.
+    if preprocessed.version.is_some() || is_part || graph.ending.is_some() {
         return None;
     }
     let root = graph.modules.first()?;

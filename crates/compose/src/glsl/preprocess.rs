@@ -48,7 +48,12 @@ pub fn preprocess<'g, 's>(
     let mut state = PreprocessorState {
         graph,
         expander: Expander::new(graph, table, reads, es),
-        open: vec![OpenFile { module: 0, part: 0, line_shift: 0, file_number: 0, directive: None }],
+        // The last one is read first.
+        open: [graph.ending, Some(0), graph.definitions]
+            .into_iter()
+            .flatten()
+            .map(OpenFile::start)
+            .collect(),
         once: vec![false; graph.modules.len()],
         tokens,
         version: None,
@@ -101,6 +106,13 @@ struct OpenFile {
     file_number: i64,
     /// The `#include` that opened it.
     directive: Option<Span>,
+}
+
+impl OpenFile {
+    /// A file that nothing includes.
+    fn start(module: usize) -> Self {
+        Self { module, part: 0, line_shift: 0, file_number: 0, directive: None }
+    }
 }
 
 impl<'g> PreprocessorState<'g, '_> {

@@ -18,6 +18,12 @@ pub struct Packages {
     pub root: Package,
     /// Warnings about the files that declare the packages.
     pub warnings: Diagnostics,
+    /// What is read before every root file in GLSL: `#define` lines, and declarations.
+    pub definitions: String,
+    /// What is read after every root file in GLSL.
+    pub ending: String,
+    /// Numbers of the packages where an `#include` is looked for last.
+    includes: Vec<usize>,
     dependencies: Vec<Package>,
     /// By the number of the package that imports.
     scopes: Vec<Scope>,
@@ -43,14 +49,30 @@ impl Packages {
         }
         names.entry(root.name.clone()).or_insert(ROOT);
         let scopes = vec![Scope { names, manifest: None }; dependencies.len() + 1];
-        Self { root, warnings: Vec::new(), dependencies, scopes }
+        Self {
+            root,
+            warnings: Vec::new(),
+            definitions: String::new(),
+            ending: String::new(),
+            includes: Vec::new(),
+            dependencies,
+            scopes,
+        }
     }
 
     /// Packages with what each of them declares, the root first. The names of the packages must
     /// differ, since they appear in outputs.
     pub fn scoped(root: Package, dependencies: Vec<Package>, mut scopes: Vec<Scope>) -> Self {
         scopes.resize(dependencies.len() + 1, Scope::default());
-        Self { root, warnings: Vec::new(), dependencies, scopes }
+        Self {
+            root,
+            warnings: Vec::new(),
+            definitions: String::new(),
+            ending: String::new(),
+            includes: Vec::new(),
+            dependencies,
+            scopes,
+        }
     }
 
     /// A package with nothing but one text, which imports nothing.
@@ -68,6 +90,18 @@ impl Packages {
         for scope in &mut self.scopes {
             scope.names.entry(name.clone()).or_insert(number);
         }
+    }
+
+    /// Adds files that an `#include` finds by their paths where nothing else has them.
+    pub fn add_includes(&mut self, package: Package) {
+        self.dependencies.push(package);
+        self.scopes.push(self.scopes[ROOT].clone());
+        self.includes.push(self.dependencies.len());
+    }
+
+    /// The numbers of the packages that [`Self::add_includes`] added, in their order.
+    pub fn includes(&self) -> &[usize] {
+        &self.includes
     }
 
     /// The package of a number; the root if there is none.

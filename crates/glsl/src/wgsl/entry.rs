@@ -6,6 +6,7 @@ use super::output::Fact;
 use super::{Clip, Writer};
 use crate::builtin::variables::{Builtin, Meaning};
 use crate::lexer::At;
+use crate::program::NumberOf;
 use crate::tree::{ExprKind, Interpolation, Number, Place, Stage, Var};
 use crate::types::Type;
 
@@ -199,6 +200,9 @@ impl<'s> Writer<'s> {
             return None;
         }
         if root.location.is_none() {
+            root.location = self.number_of(var);
+        }
+        if root.location.is_none() {
             while (*next..*next + count).any(|location| used.contains(&location)) {
                 *next += 1;
             }
@@ -209,6 +213,25 @@ impl<'s> Writer<'s> {
             *next += count;
         }
         Some(root)
+    }
+
+    /// The location that the program gives an input or an output. That of a block is by its name.
+    fn number_of(&self, var: &Var) -> Option<u32> {
+        let of = if var.place == Place::Input { NumberOf::Input } else { NumberOf::Output };
+        self.numbers.get(of, self.linked_name(var))
+    }
+
+    /// The name by which the stages of a program share a variable.
+    pub(super) fn linked_name<'v>(&self, var: &'v Var) -> &'v str
+    where
+        's: 'v,
+    {
+        match var.ty.innermost() {
+            Type::Struct(index) if self.shader.structs[*index as usize].block => {
+                &self.shader.structs[*index as usize].name
+            }
+            _ => &var.name,
+        }
     }
 
     /// Whether this is the only output of a fragment shader, which has the location 0.

@@ -1,12 +1,14 @@
 //! Declarations outside of functions: structures, constants, variables and resources.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
+use super::bound::open_index;
 use super::memory::{Mem, Rules};
 use super::output::{Fact, Resource};
 use super::{Writer, names};
 use crate::lexer::At;
+use crate::program::NumberOf;
 use crate::tree::{Expr, ExprKind, Number, Packing, Place, Stage, Var};
 use crate::types::{Opaque, OpaqueKind, Type};
 
@@ -44,7 +46,7 @@ impl Bindings {
 
 /// What a whole text does with its resources.
 #[derive(Debug, Default)]
-struct Uses {
+pub(super) struct Uses {
     atomics: BTreeSet<(u32, Option<u32>)>,
     /// Separate textures that are compared with.
     compared: BTreeSet<u32>,
@@ -53,7 +55,7 @@ struct Uses {
     loaded: BTreeSet<u32>,
     stored: BTreeSet<u32>,
     /// Arrays of textures, samplers and blocks with an index that only an array of bindings takes.
-    indexed: BTreeSet<u32>,
+    pub(super) indexed: BTreeSet<u32>,
 }
 
 /// Formats of images in GLSL and in WGSL.
@@ -89,13 +91,11 @@ impl Writer<'_> {
         let uses = self.uses();
         self.atomics.clone_from(&uses.atomics);
         let shader = self.shader;
-        let explicit = |var: &&Var| var.layout.binding.is_some();
-        let named = shader
-            .vars
-            .iter()
-            .filter(explicit)
-            .map(|var| (var.layout.set.unwrap_or(0), var.layout.binding.unwrap_or(0)))
-            .collect();
+        let given = |var: &Var| {
+            let number = || self.numbers.get(NumberOf::Binding, self.linked_name(var));
+            Some((var.layout.set.unwrap_or(0), var.layout.binding.or_else(number)?))
+        };
+        let named = shader.vars.iter().filter_map(given).collect();
         let mut bindings = Bindings { used: BTreeSet::new(), named };
         let (mut first, mut later) = (Vec::new(), Vec::new());
         let mut seen = BTreeSet::new();
@@ -197,7 +197,9 @@ impl Writer<'_> {
     fn binding(&mut self, index: u32, name: &str, element: u32, bindings: &mut Bindings) -> u32 {
         let var = self.var(index);
         let layout = &var.layout;
-        let found = bindings.take(layout.set.unwrap_or(0), layout.binding, element);
+        let number = self.numbers.get(NumberOf::Binding, self.linked_name(var));
+        let wanted = layout.binding.or(number);
+        let found = bindings.take(layout.set.unwrap_or(0), wanted, element);
         if let Some(wanted) = layout.binding.map(|first| first.saturating_add(element))
             && wanted != found
         {
@@ -214,21 +216,6 @@ impl Writer<'_> {
         sampler: Option<u32>,
     ) {
         self.facts.resources.push(Resource { name, wgsl, group, binding, sampler });
-    }
-
-    /// Whether an array of resources is one of bindings, which not every target has. A smaller one
-    /// whose indices are known is written as a variable for each element.
-    fn is_bound_array(&self, index: u32, size: Option<u32>, uses: &Uses) -> bool {
-        size.is_none_or(|size| size > 64) || uses.indexed.contains(&index)
-    }
-
-    /// The type of a resource, as an array of bindings where the variable is one.
-    fn bound_text(&self, index: u32, element: &str) -> String {
-        match self.bound_arrays.get(&index) {
-            Some(Some(size)) => format!("binding_array<{element}, {size}>"),
-            Some(None) => format!("binding_array<{element}>"),
-            None => element.to_owned(),
-        }
     }
 
     /// Textures, samplers and images of a variable, in structures and arrays too.
@@ -385,13 +372,17 @@ impl Writer<'_> {
     /// Samplers of combined textures come behind all other bindings.
     fn plan_samplers(&mut self, bindings: &mut Bindings) {
         let keys: Vec<(u32, Vec<u32>)> = self.opaque.keys().cloned().collect();
+        let mut counted: BTreeMap<u32, u32> = BTreeMap::new();
         for key in keys {
             let Some(opaque) = self.opaque_of(&key) else { continue };
             if opaque.kind != OpaqueKind::Combined || opaque.multisampled {
                 continue;
             }
             let group = self.var(key.0).layout.set.unwrap_or(0);
-            let binding = bindings.take(group, None, 0);
+            let element = counted.entry(key.0).or_insert(0);
+            let first = self.numbers.get(NumberOf::Sampler, &self.var(key.0).name);
+            let binding = bindings.take(group, first.map(|first| first + *element), 0);
+            *element += 1;
             let Some(texture) = self.opaque.get(&key).map(|names| names.texture.clone()) else {
                 continue;
             };
@@ -467,7 +458,7 @@ impl Writer<'_> {
         }
         let ty = self.global_name("Uniforms");
         let name = self.global_name("uniforms");
-        let binding = bindings.take(0, None, 0);
+        let binding = bindings.take(0, self.numbers.uniforms(), 0);
         self.preamble.push(format!(
             "struct {ty} {{\n{members}}}\n@group(0) @binding({binding}) var<uniform> {name}: {ty};"
         ));
@@ -527,26 +518,6 @@ impl Writer<'_> {
             self.refuse(expr.at, "this texture is not known");
         }
         found
-    }
-
-    /// Whether a variable is an array of bindings.
-    pub(super) fn is_bound(&self, base: &Expr) -> bool {
-        matches!(base.kind, ExprKind::Var(index) if self.bound_arrays.contains_key(&index))
-    }
-
-    /// An element of an array of bindings.
-    fn bound_element(&mut self, base: &Expr, index: &Expr) -> Option<OpaqueNames> {
-        let ExprKind::Var(var) = base.kind else { return None };
-        let names = self.opaque.get(&(var, Vec::new())).cloned()?;
-        let value = self.value(index);
-        let at = match names.sampler {
-            // The index is written twice.
-            Some(_) => self.kept(index.at, &value),
-            None => value.text,
-        };
-        let element = |name: String| format!("{name}[{at}]");
-        let OpaqueNames { texture, sampler, depth } = names;
-        Some(OpaqueNames { texture: element(texture), sampler: sampler.map(element), depth })
     }
 
     fn uses(&self) -> Uses {
@@ -791,21 +762,6 @@ fn atomic_root(expr: &Expr) -> Option<(u32, Option<u32>)> {
         ExprKind::Index(base, _) => atomic_root(base),
         ExprKind::Member(base, member) => match base.kind {
             ExprKind::Var(index) => Some((index, Some(*member))),
-            _ => None,
-        },
-        _ => None,
-    }
-}
-
-/// The array of resources that an expression indexes by what is not known.
-fn open_index(expr: &Expr) -> Option<u32> {
-    match &expr.kind {
-        ExprKind::Index(base, index) if index.known.is_none() => match (&base.kind, &base.ty) {
-            (ExprKind::Var(var), Type::Array(element, _))
-                if element.is_opaque() || matches!(**element, Type::Struct(_)) =>
-            {
-                Some(*var)
-            }
             _ => None,
         },
         _ => None,

@@ -1,5 +1,6 @@
 //! The translator: a typed tree to readable WGSL, with a source map and what WGSL has no word for.
 
+mod bound;
 mod builtin;
 mod call;
 mod constant;
@@ -25,6 +26,7 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::lexer::At;
+use crate::program::Numbers;
 use crate::tree::{Item, Op, Place, Shader, Stage};
 use crate::types::Type;
 use memory::Mem;
@@ -116,6 +118,8 @@ pub(crate) struct Writer<'s> {
     stored: memory::Stored,
     /// Textures and samplers by variable and path.
     opaque: BTreeMap<(u32, Vec<u32>), globals::OpaqueNames>,
+    /// The numbers of the program that the text belongs to.
+    numbers: Numbers,
     /// Arrays of bindings, with their sizes.
     bound_arrays: BTreeMap<u32, Option<u32>>,
     /// Texts of declarations of resources, by variable.
@@ -170,6 +174,7 @@ impl<'s> Writer<'s> {
             memory: FxHashMap::default(),
             stored: memory::Stored::default(),
             opaque: BTreeMap::new(),
+            numbers: Numbers::of(text),
             bound_arrays: BTreeMap::new(),
             declarations: FxHashMap::default(),
             preamble: Vec::new(),

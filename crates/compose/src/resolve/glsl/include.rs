@@ -9,7 +9,8 @@ pub const EXTENSIONS: &[&str] = &["glsl", "vert", "frag", "comp", "h"];
 
 /// The places to look at, in order: `"path"` is relative to the includer, then to its package's
 /// root; `<name/path>` is in the package that the includer's package calls by that name, then
-/// relative to the root package's root.
+/// relative to the root package's root. Both are looked for last in the folders of
+/// [`Packages::includes`].
 pub fn include_candidates(
     packages: &Packages,
     includer: &PackagePath,
@@ -31,6 +32,9 @@ pub fn include_candidates(
         ));
         places.extend(normalize_path("", path).map(|path| (includer.0, path)));
     }
+    let found = normalize_path("", path);
+    let further = packages.includes().iter().zip(std::iter::repeat(found));
+    places.extend(further.filter_map(|(number, path)| Some((*number, path?))));
     Ok(places)
 }
 

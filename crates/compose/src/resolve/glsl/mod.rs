@@ -16,6 +16,10 @@ pub struct Graph {
     pub root: String,
     /// The root first, then in the order of first mention, breadth first.
     pub modules: Vec<Module>,
+    /// The module with definitions that are read before the root.
+    pub definitions: Option<usize>,
+    /// The module that is read after the root.
+    pub ending: Option<usize>,
     /// For each module, where each of its includes leads.
     pub targets: Vec<Vec<IncludeTarget>>,
     /// Spellings of all tokens.
@@ -171,10 +175,24 @@ impl<'a> Loader<'a> {
             let resolved = self.targets(targets.len())?;
             targets.push(resolved);
         }
+        let packages = self.packages;
+        let definitions = self.add_text("<definitions>", &packages.definitions);
+        let ending = self.add_text("<ending>", &packages.ending);
+        targets.resize_with(self.modules.len(), Vec::new);
         let library = self.packages.library();
         let Loader { modules, symbols, paths, places, .. } = self;
         let packages = places.into_iter().map(|(package, _)| package).collect();
-        Ok(Graph { root: root.to_owned(), modules, targets, symbols, paths, packages, library })
+        let root = root.to_owned();
+        Ok(Graph { root, modules, definitions, ending, targets, symbols, paths, packages, library })
+    }
+
+    /// The module of a text from outside, if there is any.
+    fn add_text(&mut self, name: &str, text: &str) -> Option<usize> {
+        if text.is_empty() {
+            return None;
+        }
+        let source = self.sources.add(name, text);
+        Some(self.add(&(ROOT, name.to_owned()), source))
     }
 
     /// Resolves every include of a module that was read.

@@ -1,0 +1,292 @@
+//! Numbers for what the shaders of a program leave open: locations and bindings.
+//!
+//! They are counted over the sources of both stages, the vertex stage first, with all branches of
+//! all conditions. So they depend on the sources alone: every permutation has the same numbers, and
+//! what goes from one stage to the next has one location in both. What has a number in one place of
+//! the sources keeps it.
+//!
+//! A number is added to the end of a composed text as a line of the preprocessor, which other
+//! compilers pass over.
+
+mod scan;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+
+use scan::{Declared, DeclaredKind, Scanned};
+
+/// How the lines begin.
+const LINE: &str = "#pragma lamplight_number ";
+
+/// What a number is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum NumberOf {
+    /// The location of an input.
+    Input,
+    /// The location of an output.
+    Output,
+    /// The binding of a resource.
+    Binding,
+    /// The binding of the sampler that a combined texture gets.
+    Sampler,
+    /// The binding of the block of the uniforms that are in no block. It has no name.
+    Uniforms,
+}
+
+const WORDS: [(NumberOf, &str); 5] = [
+    (NumberOf::Input, "in"),
+    (NumberOf::Output, "out"),
+    (NumberOf::Binding, "binding"),
+    (NumberOf::Sampler, "sampler"),
+    (NumberOf::Uniforms, "uniforms"),
+];
+
+/// The lines for the texts of a vertex and of a fragment stage, each given as the texts of its files:
+/// the root first. A stage that leaves nothing open has none.
+pub fn number_program(vertex: &[&str], fragment: &[&str]) -> [String; 2] {
+    let stages = [vertex, fragment].map(Scanned::of);
+    let mut lines = [String::new(), String::new()];
+    let [vertex, fragment] = &stages;
+    let outer = [(0, vertex, DeclaredKind::Input), (1, fragment, DeclaredKind::Output)];
+    for (stage, scanned, kind) in outer {
+        let names: Vec<_> = scanned.of_kind(kind).collect();
+        let numbers = locations(&names);
+        add_locations(&mut lines[stage], kind, &names, &numbers);
+    }
+    let sent: Vec<_> = vertex.of_kind(DeclaredKind::Output).collect();
+    let taken: Vec<_> = fragment.of_kind(DeclaredKind::Input).collect();
+    let numbers = locations(&[&sent[..], &taken[..]].concat());
+    add_locations(&mut lines[0], DeclaredKind::Output, &sent, &numbers);
+    add_locations(&mut lines[1], DeclaredKind::Input, &taken, &numbers);
+    add_bindings(&mut lines, &stages);
+    lines
+}
+
+/// Whether a text has numbers of its program.
+pub fn is_numbered(text: &str) -> bool {
+    text.lines().next_back().is_some_and(|line| line.starts_with(LINE))
+}
+
+/// The first location of each name.
+fn locations<'t>(names: &[&Declared<'t>]) -> BTreeMap<&'t str, u32> {
+    let mut used = BTreeSet::new();
+    let mut found = BTreeMap::new();
+    for declared in names {
+        let Some(first) = declared.number else { continue };
+        used.extend(first..first.saturating_add(declared.count));
+        found.entry(declared.name).or_insert(first);
+    }
+    let mut next = 0;
+    for declared in names {
+        if found.contains_key(declared.name) {
+            continue;
+        }
+        let count = largest(names, declared.name);
+        while (next..next + count).any(|location| used.contains(&location)) {
+            next += 1;
+        }
+        found.insert(declared.name, next);
+        next += count;
+    }
+    found
+}
+
+/// How many numbers a name takes where it takes most.
+fn largest(names: &[&Declared<'_>], name: &str) -> u32 {
+    let same = names.iter().filter(|declared| declared.name == name);
+    same.map(|declared| declared.count).max().unwrap_or(1)
+}
+
+fn add_locations(
+    lines: &mut String,
+    kind: DeclaredKind,
+    names: &[&Declared<'_>],
+    numbers: &BTreeMap<&str, u32>,
+) {
+    let of = if kind == DeclaredKind::Input { NumberOf::Input } else { NumberOf::Output };
+    let mut known = BTreeSet::new();
+    for declared in names.iter().filter(|declared| declared.number.is_none()) {
+        if let Some(number) = numbers.get(declared.name)
+            && known.insert(declared.name)
+        {
+            add_line(lines, of, declared.name, *number);
+        }
+    }
+}
+
+fn add_line(lines: &mut String, of: NumberOf, name: &str, number: u32) {
+    let word = WORDS.iter().find(|(known, _)| *known == of).map_or("", |(_, word)| word);
+    // Writing to a string does not fail.
+    let _ = writeln!(lines, "{LINE}{word} {name} {number}");
+}
+
+/// Bindings that are in use, by group.
+#[derive(Default)]
+struct UsedBindings(BTreeSet<(u32, u32)>);
+
+impl UsedBindings {
+    /// The first of so many bindings that are free in a group.
+    fn take(&mut self, group: u32, count: u32) -> u32 {
+        let is_free = |first: u32| (first..first + count).all(|at| !self.0.contains(&(group, at)));
+        let first = (0..1 << 16).find(|first| is_free(*first)).unwrap_or(0);
+        self.keep(group, first, count);
+        first
+    }
+
+    fn keep(&mut self, group: u32, first: u32, count: u32) {
+        self.0.extend((first..first.saturating_add(count)).map(|at| (group, at)));
+    }
+}
+
+/// Numbers the resources of both stages, then the samplers of combined textures, then the blocks of
+/// loose uniforms. A resource of one name is the same in both.
+fn add_bindings(lines: &mut [String; 2], stages: &[Scanned<'_>; 2]) {
+    let all: Vec<&Declared<'_>> =
+        stages.iter().flat_map(|stage| stage.of_kind(DeclaredKind::Resource)).collect();
+    let mut used = UsedBindings::default();
+    let (mut bindings, mut samplers) = (BTreeMap::new(), BTreeMap::new());
+    for declared in &all {
+        if let Some(first) = declared.number {
+            used.keep(declared.group, first, declared.count);
+            bindings.entry(declared.name).or_insert(first);
+        }
+    }
+    for declared in &all {
+        let count = largest(&all, declared.name);
+        bindings.entry(declared.name).or_insert_with(|| used.take(declared.group, count));
+    }
+    for declared in all.iter().filter(|declared| declared.samplers > 0) {
+        let count = declared.samplers;
+        samplers.entry(declared.name).or_insert_with(|| used.take(declared.group, count));
+    }
+    for (lines, stage) in lines.iter_mut().zip(stages) {
+        let mut known = BTreeSet::new();
+        for declared in stage.of_kind(DeclaredKind::Resource) {
+            if !known.insert(declared.name) {
+                continue;
+            }
+            if declared.number.is_none() {
+                add_line(lines, NumberOf::Binding, declared.name, bindings[declared.name]);
+            }
+            if let Some(first) = samplers.get(declared.name) {
+                add_line(lines, NumberOf::Sampler, declared.name, *first);
+            }
+        }
+        if stage.has_loose_uniforms {
+            add_line(lines, NumberOf::Uniforms, "-", used.take(0, 1));
+        }
+    }
+}
+
+/// The numbers in a text.
+#[derive(Debug, Default)]
+pub(crate) struct Numbers(BTreeMap<(NumberOf, String), u32>);
+
+impl Numbers {
+    pub(crate) fn of(text: &str) -> Self {
+        let lines = text.lines().rev().map_while(|line| line.strip_prefix(LINE));
+        let read = |line: &str| {
+            let mut words = line.split(' ');
+            let word = words.next()?;
+            let (of, _) = WORDS.iter().find(|(_, known)| *known == word)?;
+            let name = words.next()?.to_owned();
+            Some(((*of, name), words.next()?.parse().ok()?))
+        };
+        Self(lines.filter_map(read).collect())
+    }
+
+    /// A number, if the program has one for this.
+    pub(crate) fn get(&self, of: NumberOf, name: &str) -> Option<u32> {
+        self.0.get(&(of, name.to_owned())).copied()
+    }
+
+    /// The binding of the block of loose uniforms.
+    pub(crate) fn uniforms(&self) -> Option<u32> {
+        self.get(NumberOf::Uniforms, "-")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LINE, number_program};
+
+    fn lines(vertex: &str, fragment: &str) -> [Vec<String>; 2] {
+        number_program(&[vertex], &[fragment]).map(|text| {
+            text.lines().map(|line| line.strip_prefix(LINE).unwrap_or("?").to_owned()).collect()
+        })
+    }
+
+    #[test]
+    fn locations_by_name() {
+        let [vertex, fragment] = lines(
+            "in vec3 at; in mat4 model; in vec2 uv_in;\nout vec2 uv; out vec3 normal;",
+            "in vec3 normal; in float more; in vec2 uv;\nout vec4 colour;",
+        );
+        assert_eq!(vertex, ["in at 0", "in model 1", "in uv_in 5", "out uv 0", "out normal 1"]);
+        assert_eq!(fragment, ["out colour 0", "in normal 1", "in more 2", "in uv 0"]);
+    }
+
+    #[test]
+    fn all_branches_count() {
+        let [vertex, fragment] = lines(
+            "#ifdef A\nout vec4 a;\n#endif\nout vec4 b;",
+            "in vec4 b;\n#if X > 1\nin vec4 a;\n#else\nin vec4 c;\n#endif",
+        );
+        assert_eq!(vertex, ["out a 0", "out b 1"]);
+        assert_eq!(fragment, ["in b 1", "in a 0", "in c 2"]);
+    }
+
+    #[test]
+    fn given_numbers_stay() {
+        let [vertex, fragment] = lines(
+            "layout(location = 1) out vec4 a; out mat3 b; out vec4 c;",
+            "layout(location=1) in vec4 a; in mat3 b; in vec4 c;",
+        );
+        assert_eq!(vertex, ["out b 2", "out c 5"]);
+        assert_eq!(fragment, ["in b 2", "in c 5"]);
+    }
+
+    #[test]
+    fn blocks_and_arrays() {
+        let [vertex, fragment] = lines(
+            "#define COUNT 3\nconst int MORE = 2;\nstruct S { vec2 a; mat2 b; };\n\
+             out Sent { vec3 at; vec2 uv[COUNT]; } sent; out S s[MORE]; out vec4 last;",
+            "in Sent { vec3 at; vec2 uv[3]; } taken; in vec4 last;",
+        );
+        assert_eq!(vertex, ["out Sent 0", "out s 4", "out last 10"]);
+        assert_eq!(fragment, ["in Sent 0", "in last 10"]);
+    }
+
+    #[test]
+    fn bindings_are_shared() {
+        let [vertex, fragment] = lines(
+            "uniform mat4 model; uniform sampler2D height; layout(std140) uniform Camera { mat4 v; };",
+            "struct Material { sampler2D diffuse; sampler2D specular; float shininess; };\n\
+             uniform sampler2D height; uniform Material material; uniform vec3 lamp;\n\
+             layout(binding = 0) uniform Scene { vec4 a; };",
+        );
+        assert_eq!(
+            vertex,
+            ["binding height 1", "sampler height 5", "binding Camera 2", "uniforms - 8"]
+        );
+        assert_eq!(
+            fragment,
+            [
+                "binding height 1",
+                "sampler height 5",
+                "binding material 3",
+                "sampler material 6",
+                "uniforms - 9"
+            ]
+        );
+    }
+
+    #[test]
+    fn functions_have_no_numbers() {
+        let [vertex, fragment] = lines(
+            "layout(location = 0) in vec3 at; void f(in vec3 a, out vec3 b) { b = a; }\nvoid main() {}",
+            "void main() { for (int i = 0; i < 3; i++) { vec4 a; } }",
+        );
+        assert!(vertex.is_empty() && fragment.is_empty(), "{vertex:?} {fragment:?}");
+    }
+}
