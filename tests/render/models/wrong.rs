@@ -36,7 +36,16 @@ const WRONG: &[Wrong] = &[
     ("version", || [b"glTF".as_slice(), &[1, 0, 0, 0]].concat(), "version 1"),
     ("cut_short", || changed(|_| ())[..40].to_vec(), "more than the file"),
     ("no_document", || glb(&json!([1]), &[]), "model.glb"),
-    ("no_scene", || changed(|document| document["scenes"] = json!([])), "scene"),
+    (
+        "no_scene",
+        || {
+            changed(|document| {
+                document["scenes"] = json!([]);
+                document["nodes"] = json!([]);
+            })
+        },
+        "scene",
+    ),
     ("index", || changed(|document| document["accessors"][0]["count"] = json!(2)), "is beyond"),
     (
         "view_beyond_the_buffer",

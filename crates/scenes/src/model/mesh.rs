@@ -2,8 +2,9 @@
 //! against the bytes that are there.
 
 use crate::model::GltfReader;
+use crate::model::channels::Coordinates;
 use crate::model::nodes::PlacedMesh;
-use crate::model::surface::{Coordinates, Means, read_surface};
+use crate::model::surface::{Means, read_surface};
 use crate::model::texture::Sheet;
 use crate::sets::Object;
 use crate::shape::{Shape, Vertex};

@@ -5,6 +5,8 @@
 //! What the programs do not have is left out, and a note says so. What is broken is an error that
 //! names its place in the document. All memory is bounded by [`limits`](lamplight_files::limits).
 
+mod channels;
+mod document;
 mod mesh;
 mod nodes;
 mod surface;
@@ -93,9 +95,9 @@ pub fn read_model(bytes: &[u8], view: View) -> Result<Model, String> {
     let (json, blob) = document_and_bytes(bytes)?;
     // The crate that reads documents panics at some that are broken.
     let read = || -> Result<Model, String> {
-        let document =
-            gltf::Gltf::from_slice(json).map_err(|error| document_error(&error))?.document;
-        let (notes, means) = (BTreeSet::new(), BTreeMap::new());
+        let mut notes = BTreeSet::new();
+        let document = document::read_document(json, &mut notes)?;
+        let means = BTreeMap::new();
         let mut reader = GltfReader { document: &document, blob, notes, means, all_unlit: false };
         model_scene(&mut reader, view)
     };
@@ -117,7 +119,16 @@ fn document_and_bytes(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
         return Err(format!("its document has more bytes than {MODEL_JSON_BYTES}"));
     }
     let has_more = after + 8 <= bytes.len();
-    let blob = if has_more { chunk_bytes(bytes, after, b"BIN\0")?.0 } else { &[] };
+    let blob = if has_more {
+        chunk_bytes(bytes, after, b"BIN\0").map(|chunk| chunk.0)
+    } else {
+        Ok(&[][..])
+    };
+    let length = json.len();
+    let unpadded = format!(
+        "the chunk at byte {HEADER} has {length} bytes; glTF wants multiples of 4, filled with spaces"
+    );
+    let blob = blob.map_err(|problem| if length % 4 == 0 { problem } else { unpadded })?;
     Ok((json, blob))
 }
 
@@ -142,17 +153,6 @@ fn word_at(bytes: &[u8], at: usize) -> Result<u32, String> {
     four.map(u32::from_le_bytes).ok_or_else(|| format!("the file ends at byte {}", bytes.len()))
 }
 
-/// What is wrong with a document, with the places that its reader names.
-fn document_error(error: &gltf::Error) -> String {
-    const SHOWN: usize = 4;
-    let gltf::Error::Validation(problems) = error else { return error.to_string() };
-    let message = |(path, problem): &(gltf::json::Path, gltf::json::validation::Error)| {
-        format!("{path}: {problem}")
-    };
-    let shown: Vec<String> = problems.iter().take(SHOWN).map(message).collect();
-    shown.join("; ")
-}
-
 fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String> {
     let placed = nodes::walk_scene(reader)?;
     reader.all_unlit = drawn_materials(reader.document, &placed).all(|one| one.unlit());
@@ -164,7 +164,7 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
     }
     let (objects, means): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     if objects.is_empty() {
-        return Err("the model has no triangles".to_owned());
+        return Err(no_triangles(reader.document));
     }
     let bounds = nodes::bounding_ball(&objects);
     let eye = model_eye(&placed, &bounds, view)?;
@@ -188,6 +188,14 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
     scene.own_maps = sheet.maps.map(Arc::new);
     let notes = std::mem::take(&mut reader.notes);
     Ok(Model { scene, notes, axes, layers, textures: sheet.names, means })
+}
+
+/// Why a model without triangles is not drawn.
+fn no_triangles(document: &gltf::Document) -> String {
+    if document.meshes().any(|mesh| mesh.primitives().next().is_some()) {
+        return "nothing in the model is drawn: its scene has points and lines at most".to_owned();
+    }
+    "the model has no triangles".to_owned()
 }
 
 /// The farthest distance for which the functions of the library give finite results.

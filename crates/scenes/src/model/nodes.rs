@@ -1,5 +1,7 @@
 //! Walks the nodes of a scene: meshes, cameras and lights with their transforms.
 
+use std::collections::BTreeSet;
+
 use glam::{DMat4, DVec3};
 use gltf::camera::Projection;
 use gltf::khr_lights_punctual::Kind;
@@ -41,9 +43,12 @@ pub struct Ball {
 pub fn walk_scene(reader: &mut GltfReader<'_>) -> Result<PlacedNodes, String> {
     let document = reader.document;
     let scene = document.default_scene().or_else(|| document.scenes().next());
-    let scene = scene.ok_or("the model has no scene")?;
+    let roots = match scene {
+        Some(scene) => scene.nodes().collect(),
+        None => parentless(reader)?,
+    };
     let mut placed = PlacedNodes::default();
-    let mut open: Vec<_> = scene.nodes().map(|node| (node, DMat4::IDENTITY, 0)).collect();
+    let mut open: Vec<_> = roots.into_iter().map(|node| (node, DMat4::IDENTITY, 0)).collect();
     open.reverse();
     let (mut seen, mut ancestors) = (0, Vec::new());
     while let Some((node, parent, depth)) = open.pop() {
@@ -68,6 +73,19 @@ pub fn walk_scene(reader: &mut GltfReader<'_>) -> Result<PlacedNodes, String> {
         open.extend(node.children().map(|child| (child, world, depth + 1)));
     }
     Ok(placed)
+}
+
+/// The nodes that are no node's child, for a document without scenes.
+fn parentless<'d>(reader: &mut GltfReader<'d>) -> Result<Vec<gltf::Node<'d>>, String> {
+    let document = reader.document;
+    let children: BTreeSet<usize> =
+        document.nodes().flat_map(|node| node.children()).map(|child| child.index()).collect();
+    let roots: Vec<_> = document.nodes().filter(|node| !children.contains(&node.index())).collect();
+    if roots.is_empty() {
+        return Err("the model has no scene".to_owned());
+    }
+    reader.notes.insert("it has no scene: all of its nodes are drawn".to_owned());
+    Ok(roots)
 }
 
 fn take_node(

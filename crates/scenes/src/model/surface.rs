@@ -1,12 +1,12 @@
-//! Materials of glTF as those of the programs: the factors of the material and of its extensions,
-//! which channels of its images are in which textures of `forward`, and where these are on the
-//! surface: which set of coordinates they have, and how KHR_texture_transform moves, turns and
-//! scales it. What the programs do not have is noted.
+//! Materials of glTF as those of the programs: the factors of the material and of its extensions.
+//! What the programs do not have is noted.
 
 use crate::layers::Layers;
 use crate::model::GltfReader;
+use crate::model::channels::is_drawn;
+use crate::model::document::{ignored_extension, is_read};
 use crate::sets::{Material, Object};
-use glam::{DAffine2, DMat2, DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3};
 use serde_json::{Map, Value};
 
 /// The colour of a surface, its material, and the means of its textures, which [`Means::apply`]
@@ -159,17 +159,6 @@ const AXES: [AxisNeed; 8] = [
     }),
 ];
 
-/// The extensions that the parser does not know and that are read here. Any other unknown one is
-/// noted as left out.
-const READ: [&str; 6] = [
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
-    "KHR_materials_diffuse_transmission",
-    "KHR_materials_dispersion",
-    "KHR_materials_iridescence",
-    "KHR_materials_sheen",
-];
-
 /// Whether light that is transmitted by the surface goes through a volume.
 fn has_body(layers: &Layers) -> bool {
     layers.thickness > 0.0 && (layers.transmission > 0.0 || layers.diffuse_transmission > 0.0)
@@ -197,9 +186,9 @@ fn read_layers(
         Some(index) => format!("materials[{index}]"),
         None => return Ok(Layers { metallic: 1.0, ..Layers::default() }),
     };
-    let known = |name: &&String| !READ.contains(&name.as_str());
-    for name in material.extensions().into_iter().flat_map(|all| all.keys()).filter(known) {
-        reader.notes.insert(format!("ignored, since no program supports it: {name}"));
+    let unknown = |name: &&String| !is_read(name);
+    for name in material.extensions().into_iter().flat_map(|all| all.keys()).filter(unknown) {
+        reader.notes.insert(ignored_extension(name));
     }
     let mut layers = parsed_layers(material, &place)?;
     let mut values =
@@ -362,290 +351,5 @@ impl<'v> ExtensionValues<'v> {
             bounded(channel, 0.0, f64::MAX, &place)?;
         }
         Ok(DVec3::new(red, green, blue))
-    }
-}
-
-/// Channels of an image that go to the same channels of a texture of `forward`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct ImageChannels {
-    /// The name of the texture's binding.
-    pub map: &'static str,
-    /// The number of the image in the document.
-    pub image: usize,
-    pub channels: &'static [usize],
-    /// Whether the image is coded as sRGB.
-    pub is_color: bool,
-    pub coordinates: Coordinates,
-    /// The bits of the strength of the image, an `f32`; see [`ImageChannels::scaled`].
-    strength: u32,
-}
-
-const RGB: &[usize] = &[0, 1, 2];
-
-/// A texture of an extension that the parser does not know: the extension, its field, the name of
-/// the binding, the channels, and whether it is a colour.
-type TextureField = (&'static str, &'static str, &'static str, &'static [usize], bool);
-
-const FIELDS: [TextureField; 9] = [
-    ("KHR_materials_anisotropy", "anisotropyTexture", "anisotropy_map", RGB, false),
-    ("KHR_materials_clearcoat", "clearcoatTexture", "clearcoat_map", &[0], false),
-    ("KHR_materials_clearcoat", "clearcoatRoughnessTexture", "clearcoat_map", &[1], false),
-    (
-        "KHR_materials_diffuse_transmission",
-        "diffuseTransmissionColorTexture",
-        "diffuse_transmission_map",
-        RGB,
-        true,
-    ),
-    (
-        "KHR_materials_diffuse_transmission",
-        "diffuseTransmissionTexture",
-        "diffuse_transmission_map",
-        &[3],
-        false,
-    ),
-    ("KHR_materials_iridescence", "iridescenceTexture", "iridescence_map", &[0], false),
-    ("KHR_materials_iridescence", "iridescenceThicknessTexture", "iridescence_map", &[1], false),
-    ("KHR_materials_sheen", "sheenColorTexture", "sheen_map", RGB, true),
-    ("KHR_materials_sheen", "sheenRoughnessTexture", "sheen_map", &[3], false),
-];
-
-/// Whether a field of an extension is a texture that is drawn.
-fn is_drawn(extension: &str, field: &str) -> bool {
-    FIELDS.iter().any(|known| (known.0, known.1) == (extension, field))
-}
-
-impl ImageChannels {
-    fn new(map: &'static str, image: usize, channels: &'static [usize], is_color: bool) -> Self {
-        let coordinates = Coordinates::default();
-        Self { map, image, channels, is_color, coordinates, strength: 1_f32.to_bits() }
-    }
-
-    fn at(self, coordinates: Coordinates) -> Self {
-        Self { coordinates, ..self }
-    }
-
-    /// A texel, mixed with 1: at strength 0 the result is 1, at strength 1 the texel. That of a normal
-    /// map leans by a factor more, and is shortened if it does not fit into a texel.
-    pub fn scaled(&self, texel: DVec4) -> DVec4 {
-        let strength = f64::from(f32::from_bits(self.strength));
-        if self.map != "normal_map" {
-            return DVec4::ONE.lerp(texel, strength.clamp(0.0, 1.0));
-        }
-        let scaled = (2.0 * texel - 1.0) * DVec4::new(strength, strength, 1.0, 1.0);
-        let scaled = scaled / scaled.truncate().abs().max_element().max(1.0);
-        (0.5 * scaled + 0.5).with_w(texel.w)
-    }
-}
-
-/// The parts of all textures of a material.
-///
-/// # Errors
-/// A texture that is not there, with the place that names it.
-pub fn material_parts(
-    reader: &GltfReader<'_>,
-    material: &gltf::Material<'_>,
-) -> Result<Vec<ImageChannels>, String> {
-    let mut parts = Vec::new();
-    let own = material.pbr_metallic_roughness();
-    let known = |info: &gltf::texture::Info<'_>, map, channels, is_color| {
-        let part = ImageChannels::new(map, info.texture().source().index(), channels, is_color);
-        part.at(Coordinates::of_texture(info))
-    };
-    let place = |field: &str| match material.index() {
-        Some(index) => format!("materials[{index}].{field}"),
-        None => field.to_owned(),
-    };
-    if let Some(info) = own.base_color_texture() {
-        parts.push(known(&info, "base_map", RGB, true));
-    }
-    // An unlit material uses no other textures.
-    if material.unlit() {
-        return Ok(parts);
-    }
-    if let Some(info) = material.normal_texture() {
-        let own = info.extension_value(TRANSFORM);
-        let at = Coordinates::read(info.tex_coord(), own, &place("normalTexture"))?;
-        let image = info.texture().source().index();
-        let part = ImageChannels::new("normal_map", image, RGB, false).at(at);
-        parts.push(ImageChannels { strength: info.scale().to_bits(), ..part });
-    }
-    for (info, map, channels, is_color) in factor_textures(material) {
-        parts.push(known(&info, map, channels, is_color));
-    }
-    if let Some(info) = material.occlusion_texture() {
-        let own = info.extension_value(TRANSFORM);
-        let at = Coordinates::read(info.tex_coord(), own, &place("occlusionTexture"))?;
-        let part =
-            ImageChannels::new("occlusion_map", info.texture().source().index(), &[0], false)
-                .at(at);
-        parts.push(ImageChannels { strength: info.strength().to_bits(), ..part });
-    }
-    for field in &FIELDS {
-        parts.extend(extension_part(reader, material, field)?);
-    }
-    Ok(parts)
-}
-
-/// A texture of a factor, the name of the binding, the channels, and whether it is a colour.
-type FactorTexture<'d> = (gltf::texture::Info<'d>, &'static str, &'static [usize], bool);
-
-/// The textures that multiply factors, of those that the parser knows.
-fn factor_textures<'d>(material: &gltf::Material<'d>) -> Vec<FactorTexture<'d>> {
-    let own = material.pbr_metallic_roughness();
-    let (specular, volume) = (material.specular(), material.volume());
-    let transmission = material.transmission().and_then(|own| own.transmission_texture());
-    let weight = specular.as_ref().and_then(|own| own.specular_texture());
-    let tint = specular.as_ref().and_then(|own| own.specular_color_texture());
-    let found: [(_, _, &'static [usize], _); 6] = [
-        (own.metallic_roughness_texture(), "metallic_roughness_map", &[1, 2], false),
-        (material.emissive_texture(), "emission_map", RGB, true),
-        (weight, "specular_map", &[3], false),
-        (tint, "specular_map", RGB, true),
-        (transmission, "transmission_map", &[0], false),
-        (volume.and_then(|own| own.thickness_texture()), "transmission_map", &[1], false),
-    ];
-    let all = found.into_iter();
-    all.filter_map(|(info, map, channels, is_color)| Some((info?, map, channels, is_color)))
-        .collect()
-}
-
-/// The texture of an extension that the parser does not know, if the material has it.
-fn extension_part(
-    reader: &GltfReader<'_>,
-    material: &gltf::Material<'_>,
-    (extension, field, map, channels, is_color): &TextureField,
-) -> Result<Option<ImageChannels>, String> {
-    let value = material.extension_value(extension).and_then(|own| own.get(*field));
-    let (Some(value), Some(index)) = (value, material.index()) else { return Ok(None) };
-    let place = format!("materials[{index}].extensions.{extension}.{field}");
-    let number = value.get("index").and_then(Value::as_u64);
-    let number = number.ok_or_else(|| format!("{place}: expected a texture, found {value}"))?;
-    let texture = usize::try_from(number).ok().and_then(|at| reader.document.textures().nth(at));
-    let texture = texture.ok_or_else(|| format!("{place}: there is no texture {number}"))?;
-    let set = set_of(value, &place)?.unwrap_or(0);
-    let own = value.get("extensions").and_then(|all| all.get(TRANSFORM));
-    let at = Coordinates::read(set, own, &place)?;
-    Ok(Some(ImageChannels::new(map, texture.source().index(), channels, *is_color).at(at)))
-}
-
-/// The name of the extension.
-const TRANSFORM: &str = "KHR_texture_transform";
-
-/// The set of coordinates that a texture or its extension names, if it names one.
-///
-/// # Errors
-/// It is not the number of a set.
-fn set_of(value: &Value, place: &str) -> Result<Option<u32>, String> {
-    let Some(named) = value.get("texCoord") else { return Ok(None) };
-    let set = named.as_u64().and_then(|set| u32::try_from(set).ok());
-    let wrong = || format!("{place}.texCoord: expected the number of a set, found {named}");
-    set.map(Some).ok_or_else(wrong)
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
-pub struct Coordinates {
-    /// The set: `TEXCOORD_0` and so on.
-    pub set: u32,
-    /// The bits of the offset, the angle and the scale; `None` changes nothing.
-    transform: Option<[u64; 5]>,
-}
-
-impl Coordinates {
-    /// Those of a set, unchanged.
-    pub fn of_set(set: u32) -> Self {
-        Self { set, transform: None }
-    }
-
-    /// Those of a texture with a set of its own, and the value of the extension, if it has one.
-    ///
-    /// # Errors
-    /// A value that is not valid, with its place.
-    pub fn read(set: u32, extension: Option<&Value>, place: &str) -> Result<Self, String> {
-        let Some(value) = extension else { return Ok(Self { set, transform: None }) };
-        let place = format!("{place}.extensions.{TRANSFORM}");
-        if !value.is_object() {
-            return Err(format!("{place}: expected an object, found {value}"));
-        }
-        let wrong = |what: &str| format!("{place}.{what}");
-        let pair = |key: &str, usual: f64| match value.get(key) {
-            None => Ok([usual; 2]),
-            Some(pair) => {
-                let numbers = pair.as_array().map(|all| all.iter().map(Value::as_f64).collect());
-                let numbers: Option<Vec<f64>> = numbers.unwrap_or_default();
-                let numbers = numbers.and_then(|all| <[f64; 2]>::try_from(all).ok());
-                numbers.ok_or_else(|| wrong(&format!("{key}: expected two numbers, found {pair}")))
-            }
-        };
-        let ([x, y], [across, down]) = (pair("offset", 0.0)?, pair("scale", 1.0)?);
-        let angle = match value.get("rotation") {
-            None => 0.0,
-            Some(angle) => angle
-                .as_f64()
-                .ok_or_else(|| wrong(&format!("rotation: expected a number, found {angle}")))?,
-        };
-        let set = set_of(value, &place)?.unwrap_or(set);
-        Ok(Self { set, transform: Some([x, y, angle, across, down].map(f64::to_bits)) })
-    }
-
-    /// Those of a texture that the parser knows with its extension.
-    pub fn of_texture(info: &gltf::texture::Info<'_>) -> Self {
-        let Some(own) = info.texture_transform() else {
-            return Self { set: info.tex_coord(), transform: None };
-        };
-        let ([x, y], [across, down]) = (own.offset(), own.scale());
-        let numbers = [x, y, own.rotation(), across, down];
-        Self {
-            set: own.tex_coord().unwrap_or(info.tex_coord()),
-            transform: Some(numbers.map(|number| f64::from(number).to_bits())),
-        }
-    }
-
-    /// From the set to the texture. The angle is counter-clockwise as one looks at the image, whose
-    /// second coordinate points down.
-    pub fn texture_from_set(&self) -> DAffine2 {
-        let Some(bits) = self.transform else { return DAffine2::IDENTITY };
-        let [x, y, angle, across, down] = bits.map(f64::from_bits);
-        let turned = DMat2::from_angle(-angle) * DMat2::from_diagonal(DVec2::new(across, down));
-        DAffine2::from_mat2_translation(turned, DVec2::new(x, y))
-    }
-}
-
-/// Coordinates that are this close to the edge of an image are meant to be at the edge.
-const ROUNDING: f64 = 1e-4;
-
-/// The part of the coordinates that a cell of the sheet shows.
-#[derive(Debug, Clone, Copy)]
-pub struct Window {
-    pub low: DVec2,
-    pub size: DVec2,
-}
-
-impl Window {
-    pub const UNIT: Self = Self { low: DVec2::ZERO, size: DVec2::ONE };
-
-    /// The smallest window of whole repetitions around some coordinates.
-    pub fn around(low: DVec2, high: DVec2) -> Self {
-        /// With more repetitions, each would get too few texels.
-        const MOST: f64 = 32.0;
-        if !low.is_finite() || !high.is_finite() {
-            return Self::UNIT;
-        }
-        let low = (low + ROUNDING).floor();
-        let size = ((high - ROUNDING).ceil() - low).clamp(DVec2::ONE, DVec2::splat(MOST));
-        Self { low, size }
-    }
-
-    /// Where in the window coordinates are, in [0, 1]; those beyond it are repeated.
-    pub fn share(&self, at: DVec2) -> DVec2 {
-        let share = (at - self.low) / self.size;
-        let is_within = |x: f64| (-ROUNDING..=1.0 + ROUNDING).contains(&x);
-        let within = |x: f64| if is_within(x) { x.clamp(0.0, 1.0) } else { x - x.floor() };
-        DVec2::new(within(share.x), within(share.y))
-    }
-
-    /// The coordinates at a share of it.
-    pub fn at(&self, share: DVec2) -> DVec2 {
-        self.low + share * self.size
     }
 }

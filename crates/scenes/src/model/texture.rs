@@ -12,8 +12,7 @@ use super::GltfReader;
 use super::mesh::{has_triangles, mesh_coordinates};
 use super::nodes::PlacedNodes;
 use crate::maps::blank_texel;
-use crate::model::surface::{Coordinates, Window};
-use crate::model::surface::{ImageChannels, material_parts};
+use crate::model::channels::{Coordinates, ImageChannels, Window, material_parts};
 use crate::sets::{Maps, TextureMap};
 use crate::shape::Shape;
 use lamplight_files::limits::{MODEL_CORNERS, MODEL_PIXELS, MODEL_TEXTURES};
@@ -188,14 +187,15 @@ impl GltfReader<'_> {
         texture: &gltf::Texture<'_>,
         is_color: bool,
     ) -> Result<DVec3, String> {
-        let key = (texture.source().index(), is_color);
+        // A texture that cannot be read counts as 1, which changes no factor.
+        let Some(image) = texture.source() else { return Ok(DVec3::ONE) };
+        let key = (image.index(), is_color);
         if let Some(mean) = self.means.get(&key) {
             return Ok(*mean);
         }
         if self.means.len() >= MODEL_TEXTURES {
             return Err(format!("materials: more than {MODEL_TEXTURES} sets of textures"));
         }
-        // A texture that cannot be read counts as 1, which changes no factor.
         let mean = self.image(key.0, is_color)?.map_or(DVec3::ONE, |map| map.mean().truncate());
         self.means.insert(key, mean);
         Ok(mean)
