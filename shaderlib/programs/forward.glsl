@@ -26,7 +26,7 @@
 #if LIGHTS != LIGHTS_NONE || SPECULAR == SPECULAR_GGX
 #include "../brdf/specular.glsl"
 #endif
-#if ATTENUATION == ATTENUATION_LINEAR_RADIUS || ATTENUATION == ATTENUATION_INVERSE_SQUARE_WINDOW
+#if ATTENUATION != ATTENUATION_POLYNOMIAL
 #include "../lighting/attenuation.glsl"
 #endif
 #if LIGHTS != LIGHTS_NONE
@@ -36,7 +36,7 @@
 #if LIGHTS != LIGHTS_NONE || OCCLUSION != OCCLUSION_NONE && !METALLIC_ROUGHNESS
 #include "../lighting/material.glsl"
 #endif
-#if CONE == CONE_HARD || CONE == CONE_SMOOTH
+#if CONE == CONE_HARD || CONE == CONE_SMOOTH || CONE == CONE_CONE_SCALE_OFFSET
 #include "../lighting/spot.glsl"
 #endif
 #if SHADOW_LIGHT != SHADOW_LIGHT_POINT && (SHADOW == SHADOW_PCF_VOGEL || SHADOW == SHADOW_PCSS)
@@ -309,6 +309,8 @@ float falloff(Light light, LightSample arriving) {
     }
     // A light of one centimetre, where a scene unit is a metre.
     return inverse_square(d2, 0.0001) * window(d2, inv_range2);
+#elif ATTENUATION == ATTENUATION_RANGE_GLTF
+    return inverse_square(arriving.distance * arriving.distance, 0.0001) * range_gltf(arriving.distance, light.range);
 #endif
 }
 #endif
@@ -325,6 +327,9 @@ float cone(Light light, LightSample arriving) {
     return cone_hard(dot(-arriving.l, light.axis), light.cutoff);
 #elif CONE == CONE_SMOOTH
     return cone_smooth(dot(-arriving.l, light.axis), light.inner, light.outer);
+#elif CONE == CONE_CONE_SCALE_OFFSET
+    float scale = 1.0 / max(light.inner - light.outer, 0.001);
+    return cone_scale_offset(dot(-arriving.l, light.axis), scale, -light.outer * scale);
 #endif
 }
 #endif

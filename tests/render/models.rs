@@ -2,8 +2,10 @@
 
 mod coordinates;
 mod edges;
+mod lamps;
 mod layers;
 mod maps;
+mod placed;
 mod sides;
 mod wrong;
 
@@ -33,8 +35,10 @@ pub fn tests() -> Vec<Trial> {
         .into_iter()
         .chain(coordinates::tests())
         .chain(edges::tests())
+        .chain(lamps::tests())
         .chain(layers::tests())
         .chain(maps::tests())
+        .chain(placed::tests())
         .chain(sides::tests())
         .chain(wrong::tests())
         .collect()

@@ -204,6 +204,7 @@ fn geometry_text(scene: &str) -> String {
         room,
         maps: _,
         own_maps: _,
+        lamp_numbers: _,
     } = (set.make)();
     let seen = (objects, eye, lamps, materials);
     let size = lamp_size.map(|size| format!(" {size}")).unwrap_or_default();

@@ -8,7 +8,7 @@ use super::values::{UniformValues, eye_projection, matrix_columns, vector_of, ve
 use lamplight_diagnostic::Diagnostics;
 use lamplight_scene::{Cells, Clusters, Reach};
 use lamplight_scenes::between_middles;
-use lamplight_scenes::sets::{Lamp, LampKind, Scene};
+use lamplight_scenes::sets::{Lamp, LampKind, LampNumbers, Scene};
 
 /// The range of falloffs that have one, as a multiple of the target's distance.
 const RANGE: f64 = 2.4;
@@ -20,6 +20,19 @@ struct Fading {
     falloff: Falloff,
     coefficients: Vec<f64>,
     range: f64,
+}
+
+impl Fading {
+    /// The factor that ends at the range. As in the programs, a range of zero is none.
+    fn window(&self, d: f64) -> f64 {
+        let share = if self.range > 0.0 { d / self.range } else { 0.0 };
+        (1.0 - share.powi(4)).max(0.0)
+    }
+
+    /// Whether the falloff is that of light, as KHR_lights_punctual has it.
+    fn is_physical(&self) -> bool {
+        matches!(self.falloff, Falloff::InverseSquareWindow | Falloff::RangeGltf)
+    }
 }
 
 /// A lamp with the numbers that the program has of it, to compute the light that probes get.
@@ -45,11 +58,8 @@ impl Fading {
                 1.0 / coefficients.fold(0.0, |sum, coefficient| sum * d + coefficient)
             }
             Falloff::LinearRadius => (1.0 - d / self.range).max(0.0),
-            Falloff::InverseSquareWindow => {
-                // As in the programs, a range of zero is none.
-                let share = if self.range > 0.0 { d / self.range } else { 0.0 };
-                (1.0 - share.powi(4)).max(0.0).powi(2) / (d * d).max(1e-4)
-            }
+            Falloff::InverseSquareWindow => self.window(d).powi(2) / (d * d).max(1e-4),
+            Falloff::RangeGltf => self.window(d) / (d * d).max(1e-4),
         }
     }
 }
@@ -89,7 +99,7 @@ impl UniformValues<'_> {
     pub(super) fn lamp(&self, index: usize, field: &str) -> Option<Vec<f64>> {
         // An array that is longer than the scene has lamps ends with zeros.
         let Some(lamp) = self.scene.lamps.get(index) else { return Some(Vec::new()) };
-        let kind = self.kind(index, lamp);
+        let (kind, given) = (self.kind(index, lamp), self.given(index));
         Some(match field {
             "kind" => vec![match kind {
                 LampKind::Directional => 1.0,
@@ -97,22 +107,29 @@ impl UniformValues<'_> {
                 LampKind::Spot => 3.0,
             }],
             "color" => vector_values(self.intensity(index, lamp, kind)),
+            // The lamps of a model have no ambient part.
+            "ambient" if given.is_some() => vec![0.0; 3],
             "ambient" => vector_values(lamp.color * 0.06),
-            "range" => vec![RANGE * lamp.reach()],
+            "range" => vec![given.map_or(RANGE * lamp.reach(), |numbers| numbers.range)],
             "position" => vector_values(lamp.position),
             "axis" => vector_values(self.axis(index, lamp, kind)),
-            "cutoff" | "outer" => vec![lamp.half_angle.cos()],
-            "inner" => vec![(0.75 * lamp.half_angle).cos()],
+            "cutoff" | "outer" => vec![given.map_or(lamp.half_angle, |own| own.outer).cos()],
+            "inner" => vec![given.map_or(0.75 * lamp.half_angle, |own| own.inner).cos()],
             "shadow_layer" => vec![if index == 0 { 0.0 } else { -1.0 }],
             _ => return None,
         })
+    }
+
+    /// What a model says of a lamp.
+    fn given(&self, index: usize) -> Option<&LampNumbers> {
+        self.scene.lamp_numbers.get(index)
     }
 
     /// The direction of a lamp. Several directional lights shine from where the lamps are, and not
     /// all straight down.
     fn axis(&self, index: usize, lamp: &Lamp, kind: LampKind) -> DVec3 {
         let key = self.scene.lamps.first().map_or(DVec3::ZERO, |key| key.target);
-        if kind == LampKind::Directional && index > 0 {
+        if kind == LampKind::Directional && index > 0 && self.given(index).is_none() {
             (key - lamp.position).normalize_or(DVec3::NEG_Y)
         } else {
             lamp.axis()
@@ -120,22 +137,30 @@ impl UniformValues<'_> {
     }
 
     /// The intensity with which the lamp's colour arrives at the target, whatever the falloff is.
+    /// A lamp of a model is as bright as the model says, with the falloff of light.
     fn intensity(&self, index: usize, lamp: &Lamp, kind: LampKind) -> DVec3 {
+        /// Beyond, the product with the falloff leaves the numbers of 32 bits.
+        const LEAST: f64 = 1e-30;
         if kind == LampKind::Directional {
-            // Directional lights reach everywhere, so all but the first are dimmer.
-            return lamp.color * if index == 0 { 1.0 } else { 0.25 };
+            // Directional lights reach everywhere, so all but the first of our own scenes are dimmer.
+            let is_whole = index == 0 || self.given(index).is_some();
+            return lamp.color * if is_whole { 1.0 } else { 0.25 };
         }
-        let falloff = self.fading(lamp).at(lamp.reach());
-        lamp.color / if falloff > 1e-6 { falloff } else { 1.0 }
+        let fading = self.fading(index, lamp);
+        if self.given(index).is_some() && fading.is_physical() {
+            return lamp.color * lamp.reach().powi(2);
+        }
+        let falloff = fading.at(lamp.reach());
+        lamp.color / if falloff > LEAST { falloff } else { 1.0 }
     }
 
-    fn fading(&self, lamp: &Lamp) -> Fading {
+    fn fading(&self, index: usize, lamp: &Lamp) -> Fading {
         let published = self.plan.number("light", "attenuation");
         let coefficients = published.or_else(|| self.lit.needs.uniform("lamps", "attenuation"));
         Fading {
             falloff: self.lit.needs.falloff,
             coefficients: coefficients.unwrap_or_else(|| vec![1.0]),
-            range: self.range(lamp.reach()),
+            range: self.range(index, lamp),
         }
     }
 
@@ -148,7 +173,7 @@ impl UniformValues<'_> {
             };
             let vector = |field: &str| vector_of(&numbers(field)).unwrap_or_default();
             let single = |field: &str| numbers(field).first().copied().unwrap_or_default();
-            let fading = self.fading(lamp);
+            let fading = self.fading(index, lamp);
             let coefficients = Some(numbers("attenuation")).filter(|numbers| !numbers.is_empty());
             Shining {
                 kind: self.kind(index, lamp),
@@ -168,10 +193,12 @@ impl UniformValues<'_> {
         lamps.map(shining).collect()
     }
 
-    /// The range of a lamp at a distance from its target.
-    fn range(&self, distance: f64) -> f64 {
+    /// The range of a lamp; 0 is none.
+    fn range(&self, index: usize, lamp: &Lamp) -> f64 {
         let published = self.plan.number("light", "range");
-        published.and_then(|range| range.first().copied()).unwrap_or(RANGE * distance)
+        let given = || self.given(index).map(|numbers| numbers.range);
+        let published = published.and_then(|range| range.first().copied());
+        published.or_else(given).unwrap_or(RANGE * lamp.reach())
     }
 
     /// The numbers of a lamp in the block `areas`: its extent.
@@ -230,10 +257,14 @@ impl UniformValues<'_> {
 
     /// The sphere that a lamp lights. It is infinite if the falloff has no end.
     fn lamp_reach(&self, index: usize, lamp: &Lamp) -> Reach {
-        let ends =
-            matches!(self.lit.needs.falloff, Falloff::LinearRadius | Falloff::InverseSquareWindow);
+        let range = self.range(index, lamp);
+        let ends = match self.lit.needs.falloff {
+            Falloff::None | Falloff::Polynomial => false,
+            Falloff::LinearRadius => true,
+            Falloff::InverseSquareWindow | Falloff::RangeGltf => range > 0.0,
+        };
         let is_near = ends && self.kind(index, lamp) != LampKind::Directional;
-        let range = if is_near { self.range(lamp.reach()) } else { f64::INFINITY };
+        let range = if is_near { range } else { f64::INFINITY };
         Reach { position: lamp.position, range }
     }
 

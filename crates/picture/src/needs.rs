@@ -97,6 +97,7 @@ pub enum Falloff {
     Polynomial,
     LinearRadius,
     InverseSquareWindow,
+    RangeGltf,
 }
 
 /// What is visible where nothing was drawn. If several values of axes choose it, the last one

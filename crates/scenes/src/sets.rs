@@ -18,6 +18,8 @@ pub struct Scene {
     pub eye: Eye,
     /// Lamps, the most important one first. The first one casts the shadow.
     pub lamps: Vec<Lamp>,
+    /// What a model says of each of its lamps. Empty if nothing does: pictures then choose it.
+    pub lamp_numbers: Vec<LampNumbers>,
     /// The materials for `material=array`: fourteen fronts with their backs.
     pub materials: Vec<[Material; 2]>,
     /// Ambient light of one colour.
@@ -94,6 +96,17 @@ pub struct Lamp {
     pub half_angle: f64,
     /// The kind for `lights=mixed`.
     pub kind: LampKind,
+}
+
+/// The numbers of a lamp of a model, as KHR_lights_punctual has them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LampNumbers {
+    /// Half of the angle of the cone within which it is fully lit, radians.
+    pub inner: f64,
+    /// Half of the angle of the cone beyond which it is dark, radians.
+    pub outer: f64,
+    /// How far it shines, in units of the scene; 0 is without an end.
+    pub range: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
@@ -312,6 +325,7 @@ fn base_scene(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
         objects,
         eye,
         lamps,
+        lamp_numbers: Vec::new(),
         materials: palette::materials(),
         ambient: DVec3::new(0.05, 0.055, 0.07),
         sky: DVec3::new(0.55, 0.68, 0.9),

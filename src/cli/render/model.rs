@@ -76,12 +76,15 @@ pub fn model_plan(
     let is_layer = |value: &str| model.layers.iter().any(|layer| layer == value);
     // The user's choices may exclude values that the model asks for. Each step keeps fewer of
     // these, until the constraints hold.
-    let kept: [&dyn Fn(&str) -> bool; 5] = [
+    let is_of_lamp = |value: &str| value.starts_with("attenuation=") || value.starts_with("cone=");
+    let kept: [&dyn Fn(&str) -> bool; 7] = [
         &|_| true,
+        &|value| !is_of_lamp(value),
         &|value| value != "dispersion=true",
         &|value| !matches!(value, "dispersion=true" | "occlusion=map"),
         &|value| !matches!(value, "dispersion=true" | "occlusion=map" | "material_maps=true"),
         &|value| !is_layer(value),
+        &|value| !is_layer(value) && !is_of_lamp(value),
     ];
     for keeps in kept {
         let (set, left_out): (Vec<&str>, Vec<&str>) = own.iter().partition(|value| keeps(value));

@@ -66,7 +66,7 @@ impl Model {
 pub enum View {
     /// The first camera of the model, or a place before it that sees all of it.
     Own,
-    /// The camera with that number.
+    /// The camera with that number in the document.
     Camera(usize),
     /// A place and what is looked at.
     At(DVec3, DVec3),
@@ -174,17 +174,19 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
              overflow there, and the picture may be empty"
         ));
     }
-    let lamps = nodes::model_lamps(&placed, &bounds, &eye);
+    let (lamps, numbers) = nodes::model_lamps(reader, &placed, &bounds, &eye);
     let mut layers = if reader.all_unlit { Vec::new() } else { surface::layer_axes(&objects) };
     let is_mapped = |name: &&str| !matches!(*name, "base_map" | "normal_map" | "occlusion_map");
     if sheet.names.iter().any(is_mapped) {
         layers.push("material_maps=true".to_owned());
     }
-    let axes = model_axes(reader, &placed, &sheet, (&lamps, &layers));
+    let is_given = !numbers.is_empty();
+    let axes = model_axes(reader, &placed, &sheet, (&lamps, is_given, &layers));
     if sheet.names.contains("occlusion_map") {
         layers.push("occlusion=map".to_owned());
     }
     let mut scene = Scene::of_model(objects, eye, lamps);
+    scene.lamp_numbers = numbers;
     scene.own_maps = sheet.maps.map(Arc::new);
     let notes = std::mem::take(&mut reader.notes);
     Ok(Model { scene, notes, axes, layers, textures: sheet.names, means })
@@ -223,7 +225,7 @@ fn model_axes(
     reader: &GltfReader<'_>,
     placed: &nodes::PlacedNodes,
     sheet: &Sheet,
-    (lamps, layers): (&[Lamp], &[String]),
+    (lamps, is_given, layers): (&[Lamp], bool, &[String]),
 ) -> Vec<String> {
     if reader.all_unlit {
         let textured =
@@ -239,6 +241,13 @@ fn model_axes(
     // Layers reflect or transmit their surroundings, so they need image-based lighting.
     let ambient = if layers.len() > 1 { "ibl" } else { "hemisphere" };
     let mut chosen = format!("specular=ggx,ambient={ambient},max_lights={most},{shadow}");
+    let has = |kinds: &[LampKind]| is_given && lamps.iter().any(|lamp| kinds.contains(&lamp.kind));
+    if has(&[LampKind::Point, LampKind::Spot]) {
+        chosen += ",attenuation=range_gltf";
+    }
+    if has(&[LampKind::Spot]) {
+        chosen += ",cone=cone_scale_offset";
+    }
     if sheet.names.contains("base_map") {
         chosen += ",base_map=true";
     }
@@ -269,10 +278,15 @@ fn model_eye(placed: &nodes::PlacedNodes, bounds: &nodes::Ball, view: View) -> R
         }
         View::Own => Ok(placed.cameras[0].eye(bounds)),
         View::Camera(index) => {
-            let count = placed.cameras.len();
-            let camera = placed.cameras.get(index);
-            let camera =
-                camera.ok_or_else(|| format!("there is no camera {index}, of {count} in it"))?;
+            let camera = placed.cameras.iter().find(|camera| camera.index == index);
+            let known = || placed.cameras.iter().map(|camera| camera.index.to_string());
+            let camera = camera.ok_or_else(|| match known().next() {
+                None => "it has no perspective camera in its scene".to_owned(),
+                Some(_) => format!(
+                    "it has no perspective camera {index} in its scene, only {}",
+                    known().collect::<Vec<_>>().join(", ")
+                ),
+            })?;
             Ok(camera.eye(bounds))
         }
     }

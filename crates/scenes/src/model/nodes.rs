@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DQuat, DVec3, DVec4};
 use gltf::camera::Projection;
 use gltf::khr_lights_punctual::Kind;
+use serde_json::Value;
 
 use super::GltfReader;
-use crate::sets::{Eye, Lamp, LampKind, Object};
+use crate::sets::{Eye, Lamp, LampKind, LampNumbers, Object};
 use lamplight_files::limits::{MODEL_NESTING, MODEL_NODES};
 
 /// A mesh and its transform to world space.
@@ -18,9 +19,20 @@ pub struct PlacedMesh {
 
 /// A camera and its transform to world space.
 pub struct GltfCamera {
+    /// Its number in the document.
+    pub index: usize,
     world_from_camera: DMat4,
     fov_y: f64,
     planes: (f64, Option<f64>),
+}
+
+/// A light and its transform to world space.
+struct GltfLight {
+    /// Its colour times its intensity: in lux if it is directional, else in candela.
+    color: DVec3,
+    kind: LampKind,
+    world_from_light: DMat4,
+    numbers: LampNumbers,
 }
 
 /// All meshes, cameras and lights of a scene.
@@ -28,9 +40,7 @@ pub struct GltfCamera {
 pub struct PlacedNodes {
     pub parts: Vec<PlacedMesh>,
     pub cameras: Vec<GltfCamera>,
-    /// Of each light: its colour times its intensity (in lux if it is directional, else in
-    /// candela), its kind, its transform to world space, and half the angle of its cone.
-    lights: Vec<(DVec3, LampKind, DMat4, f64)>,
+    lights: Vec<GltfLight>,
 }
 
 /// A ball around all vertices.
@@ -69,7 +79,11 @@ pub fn walk_scene(reader: &mut GltfReader<'_>) -> Result<PlacedNodes, String> {
         if !world.is_finite() {
             return Err(format!("{place}: its place is not finite"));
         }
-        take_node(reader, &node, world, &mut placed);
+        // A node that is hidden hides its descendants.
+        if is_hidden(&node) {
+            continue;
+        }
+        take_node(reader, &node, world, &mut placed)?;
         open.extend(node.children().map(|child| (child, world, depth + 1)));
     }
     Ok(placed)
@@ -88,39 +102,99 @@ fn parentless<'d>(reader: &mut GltfReader<'d>) -> Result<Vec<gltf::Node<'d>>, St
     Ok(roots)
 }
 
+/// Whether KHR_node_visibility hides a node.
+fn is_hidden(node: &gltf::Node<'_>) -> bool {
+    let value = node.extension_value("KHR_node_visibility");
+    value.and_then(|own| own.get("visible")).and_then(Value::as_bool) == Some(false)
+}
+
 fn take_node(
     reader: &mut GltfReader<'_>,
     node: &gltf::Node<'_>,
     world: DMat4,
     placed: &mut PlacedNodes,
-) {
+) -> Result<(), String> {
     if node.skin().is_some() {
         reader.notes.insert("skins are ignored: the model is drawn in its rest pose".to_owned());
     }
-    placed
-        .parts
-        .extend(node.mesh().map(|mesh| PlacedMesh { mesh: mesh.index(), world_from_mesh: world }));
+    if let Some(mesh) = node.mesh() {
+        let at = |own: DMat4| PlacedMesh { mesh: mesh.index(), world_from_mesh: world * own };
+        placed.parts.extend(mesh_instances(reader, node)?.into_iter().map(at));
+        if placed.parts.len() > MODEL_NODES {
+            return Err(format!("nodes[{}]: more than {MODEL_NODES} meshes", node.index()));
+        }
+    }
     let camera = node.camera();
-    match camera.as_ref().map(gltf::Camera::projection) {
-        Some(Projection::Perspective(view)) => placed.cameras.push(GltfCamera {
+    match camera.as_ref().map(|camera| (camera.index(), camera.projection())) {
+        Some((index, Projection::Perspective(view))) => placed.cameras.push(GltfCamera {
+            index,
             world_from_camera: world,
             fov_y: f64::from(view.yfov()),
             planes: (f64::from(view.znear()), view.zfar().map(f64::from)),
         }),
-        Some(Projection::Orthographic(_)) => {
-            reader.notes.insert("orthographic cameras are ignored".to_owned());
+        Some((index, Projection::Orthographic(_))) => {
+            reader.notes.insert(format!("orthographic cameras are ignored: cameras[{index}]"));
         }
         None => {}
     }
-    placed.lights.extend(node.light().map(|light| {
-        let color = DVec3::from_array(light.color().map(f64::from)) * f64::from(light.intensity());
-        let (kind, angle) = match light.kind() {
-            Kind::Directional => (LampKind::Directional, 0.7),
-            Kind::Point => (LampKind::Point, 0.7),
-            Kind::Spot { outer_cone_angle, .. } => (LampKind::Spot, f64::from(outer_cone_angle)),
+    placed.lights.extend(node.light().map(|light| placed_light(&light, world)));
+    Ok(())
+}
+
+/// Where EXT_mesh_gpu_instancing repeats a node's mesh, in the space of the node: once, without it.
+fn mesh_instances(reader: &GltfReader<'_>, node: &gltf::Node<'_>) -> Result<Vec<DMat4>, String> {
+    let Some(value) = node.extension_value(INSTANCING) else { return Ok(vec![DMat4::IDENTITY]) };
+    let place = format!("nodes[{}].extensions.{INSTANCING}.attributes", node.index());
+    let rows = |name: &str| -> Result<Option<Vec<[f64; 4]>>, String> {
+        let Some(number) = value.get("attributes").and_then(|all| all.get(name)) else {
+            return Ok(None);
         };
-        (color, kind, world, angle.clamp(0.02, 1.5))
-    }));
+        let index = number.as_u64().and_then(|index| usize::try_from(index).ok());
+        let accessor = index.and_then(|index| reader.document.accessors().nth(index));
+        let missing = || format!("{place}.{name}: there is no accessor {number}");
+        reader.rows(&accessor.ok_or_else(missing)?, &format!("{place}.{name}")).map(Some)
+    };
+    let parts = [rows("TRANSLATION")?, rows("ROTATION")?, rows("SCALE")?];
+    let counts: Vec<usize> = parts.iter().flatten().map(Vec::len).collect();
+    let Some(count) = counts.first().copied() else { return Ok(vec![DMat4::IDENTITY]) };
+    if counts.iter().any(|other| *other != count) {
+        return Err(format!("{place}: the attributes have not the same number of rows"));
+    }
+    let [moved, turned, scaled] = parts;
+    let row = |part: &Option<Vec<[f64; 4]>>, index: usize, usual: [f64; 4]| {
+        DVec4::from_array(part.as_ref().map_or(usual, |rows| rows[index]))
+    };
+    let instance = |index: usize| {
+        let turn = DQuat::from_vec4(row(&turned, index, [0.0, 0.0, 0.0, 1.0]));
+        let turn = if turn.length_squared() > 0.0 { turn.normalize() } else { DQuat::IDENTITY };
+        DMat4::from_scale_rotation_translation(
+            row(&scaled, index, [1.0; 4]).truncate(),
+            turn,
+            row(&moved, index, [0.0; 4]).truncate(),
+        )
+    };
+    Ok((0..count).map(instance).collect())
+}
+
+/// The name of the extension.
+const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+
+/// A light at the place of its node.
+fn placed_light(light: &gltf::khr_lights_punctual::Light<'_>, world: DMat4) -> GltfLight {
+    // The angles of lights that are no spots count for nothing.
+    let (kind, inner, outer) = match light.kind() {
+        Kind::Directional => (LampKind::Directional, 0.0, 0.7),
+        Kind::Point => (LampKind::Point, 0.0, 0.7),
+        Kind::Spot { inner_cone_angle, outer_cone_angle } => {
+            (LampKind::Spot, f64::from(inner_cone_angle), f64::from(outer_cone_angle))
+        }
+    };
+    GltfLight {
+        color: DVec3::from_array(light.color().map(f64::from)) * f64::from(light.intensity()),
+        kind,
+        world_from_light: world,
+        numbers: LampNumbers { inner, outer, range: light.range().map_or(0.0, f64::from) },
+    }
 }
 
 /// A ball around the vertices of all objects.
@@ -150,28 +224,46 @@ fn key_lamp(bounds: &Ball, eye: &Eye) -> Lamp {
     }
 }
 
-/// The model's lamps, at most ten; without any, one of our own.
-pub fn model_lamps(placed: &PlacedNodes, bounds: &Ball, eye: &Eye) -> Vec<Lamp> {
+/// The model's lamps with their numbers, at most ten; without any, one of our own.
+pub fn model_lamps(
+    reader: &mut GltfReader<'_>,
+    placed: &PlacedNodes,
+    bounds: &Ball,
+    eye: &Eye,
+) -> (Vec<Lamp>, Vec<LampNumbers>) {
     const MOST: usize = 10;
     if placed.lights.is_empty() {
-        return vec![key_lamp(bounds, eye)];
+        return (vec![key_lamp(bounds, eye)], Vec::new());
     }
-    let lamp = |(color, kind, world, half_angle): &(DVec3, LampKind, DMat4, f64)| {
-        let position = world.transform_point3(DVec3::ZERO);
-        let axis = world.transform_vector3(DVec3::NEG_Z).normalize_or(DVec3::NEG_Y);
+    let count = placed.lights.len();
+    if count > MOST {
+        reader.notes.insert(format!("of {count} lamps, the first {MOST} are drawn"));
+    }
+    let lights = placed.lights.iter().take(MOST);
+    lights.map(|light| (light.lamp(bounds), light.numbers)).unzip()
+}
+
+impl GltfLight {
+    fn lamp(&self, bounds: &Ball) -> Lamp {
+        let position = self.world_from_light.transform_point3(DVec3::ZERO);
+        let axis = self.world_from_light.transform_vector3(DVec3::NEG_Z);
+        let axis = axis.normalize_or(DVec3::NEG_Y);
         let reach = position.distance(bounds.middle).max(0.1 * bounds.radius);
-        let (position, target) = match kind {
+        let (position, target) = match self.kind {
             LampKind::Directional => (bounds.middle - axis * 3.0 * bounds.radius, bounds.middle),
-            LampKind::Point => (position, bounds.middle),
+            LampKind::Point => {
+                (position, position + (bounds.middle - position).normalize_or(axis) * reach)
+            }
             LampKind::Spot => (position, position + axis * reach),
         };
         // Candelas become lux at the target. A white diffuse surface reflects that over pi as
         // radiance.
-        let falloff = if *kind == LampKind::Directional { 1.0 } else { reach * reach };
-        let color = *color / falloff / std::f64::consts::PI;
-        Lamp { color, position, target, half_angle: *half_angle, kind: *kind }
-    };
-    placed.lights.iter().take(MOST).map(lamp).collect()
+        let falloff = if self.kind == LampKind::Directional { 1.0 } else { reach * reach };
+        let color = self.color / falloff / std::f64::consts::PI;
+        // The angle of a shadow map.
+        let half_angle = self.numbers.outer.clamp(0.02, 1.5);
+        Lamp { color, position, target, half_angle, kind: self.kind }
+    }
 }
 
 impl GltfCamera {
