@@ -2,6 +2,7 @@
 
 mod coordinates;
 mod edges;
+mod faces;
 mod lamps;
 mod layers;
 mod maps;
@@ -35,6 +36,7 @@ pub fn tests() -> Vec<Trial> {
         .into_iter()
         .chain(coordinates::tests())
         .chain(edges::tests())
+        .chain(faces::tests())
         .chain(lamps::tests())
         .chain(layers::tests())
         .chain(maps::tests())
@@ -67,6 +69,9 @@ const CORNERS: [[f32; 5]; 4] = [
 ];
 const TRIANGLES: [u16; 6] = [0, 1, 2, 0, 2, 3];
 
+/// Pixels of images are squares, so that each has its colour.
+const NEAREST: u32 = 9728;
+
 /// The document and the buffer of a square. The images come after the square in the buffer.
 fn square(images: &[Vec<u8>]) -> (Value, Vec<u8>) {
     let mut buffer: Vec<u8> =
@@ -83,7 +88,8 @@ fn square(images: &[Vec<u8>]) -> (Value, Vec<u8>) {
         buffer.extend(image);
         buffer.resize(buffer.len().next_multiple_of(4), 0);
     }
-    let textures: Vec<Value> = (0..images.len()).map(|index| json!({ "source": index })).collect();
+    let textures: Vec<Value> =
+        (0..images.len()).map(|index| json!({ "source": index, "sampler": 0 })).collect();
     let mut document = json!({
         "asset": { "version": "2.0" },
         "scene": 0,
@@ -105,6 +111,7 @@ fn square(images: &[Vec<u8>]) -> (Value, Vec<u8>) {
     if !listed.is_empty() {
         document["images"] = listed.into();
         document["textures"] = textures.into();
+        document["samplers"] = json!([{ "magFilter": NEAREST }]);
     }
     (document, buffer)
 }

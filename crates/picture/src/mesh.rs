@@ -1,16 +1,30 @@
 //! Makes meshes from shapes, with the attributes that a vertex stage reads.
 
+use glam::DVec3;
 use lamplight_bundle::{Reflection, Varying};
 use lamplight_execute::frame::{Mesh, VertexAttribute, VertexFormat};
 use lamplight_scenes::sets::Object;
 use lamplight_scenes::{Shape, Vertex};
 
-/// The mesh of an object for a vertex stage. With `faceted`, each triangle has vertices of its own,
-/// with the normal of its face.
-pub fn object_mesh(object: &Object, vertex: &Reflection, faceted: bool) -> Mesh {
+/// The mesh of an object for a vertex stage: of all triangles, or of those that a viewer at `eye`
+/// sees. With `faceted`, each triangle has vertices of its own, with the normal of its face.
+pub fn object_mesh(
+    object: &Object,
+    vertex: &Reflection,
+    faceted: bool,
+    eye: Option<DVec3>,
+) -> Mesh {
     let attributes = vertex_attributes(vertex);
-    let own = faceted.then(|| object.shape.faceted());
+    let indices = match eye {
+        Some(eye) => object.seen_from(eye),
+        None => object.shape.indices.clone(),
+    };
+    let own = faceted.then(|| {
+        let vertices = object.shape.vertices.clone();
+        Shape { vertices, indices: indices.clone() }.faceted()
+    });
     let shape: &Shape = own.as_ref().unwrap_or(&object.shape);
+    let indices = own.as_ref().map_or(indices, |own| own.indices.clone());
     let words = |corner: &Vertex| {
         let one = |attribute: &VertexAttribute| {
             corner_numbers(
@@ -23,7 +37,7 @@ pub fn object_mesh(object: &Object, vertex: &Reflection, faceted: bool) -> Mesh 
         attributes.iter().flat_map(one).collect::<Vec<u32>>()
     };
     let words = shape.vertices.iter().flat_map(words).collect();
-    Mesh { attributes, words, indices: shape.indices.clone() }
+    Mesh { attributes, words, indices }
 }
 
 /// The attributes that the stage reads, in its order.

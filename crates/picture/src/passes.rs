@@ -348,17 +348,24 @@ impl Studio<'_> {
             .filter(|binding| matches!(binding.name.as_str(), "object" | "materials" | "layers"))
             .collect();
         let faceted = pass.needs.faceted;
+        let of_light = !self.values.plan.is_of_viewer(pass);
+        let eye = (!of_light).then_some(self.values.scene.eye.position);
         let item = |object| {
             let buffer = |binding: &&Binding| {
                 let bytes = pack_buffer(binding, &|path| self.values.object(object, path))?;
                 Ok(((binding.group, binding.binding), bytes))
             };
+            let mesh = mesh::object_mesh(object, vertex, faceted, eye);
+            // A mesh without indices would be drawn as a list of corners.
+            if mesh.indices.is_empty() {
+                return Ok(None);
+            }
             let buffers = own.iter().map(buffer).collect::<Result<_, Diagnostic>>()?;
-            Ok((mesh::object_mesh(object, vertex, faceted), buffers))
+            Ok(Some((mesh, buffers)))
         };
-        let of_light = !self.values.plan.is_of_viewer(pass);
         let objects = self.values.scene.objects.iter();
-        objects.filter(|object| object.casts || !of_light).map(item).collect()
+        let drawn = objects.filter(|object| object.casts || !of_light);
+        drawn.filter_map(|object| item(object).transpose()).collect()
     }
 }
 

@@ -189,7 +189,7 @@ impl Sketch {
             buffers.insert(place, bytes.map_err(|problem| vec![problem])?);
         }
         let camera = own("camera");
-        let mesh = object_mesh(&model(&setting.model), &vertex.reflection, false);
+        let mesh = object_mesh(&model(&setting.model), &vertex.reflection, false, None);
         Ok(PreparedPass {
             stages: Stages { vertex, fragment: Some(self.stage.clone()) },
             items: vec![(mesh, Buffers::new())],

@@ -64,6 +64,8 @@ pub struct Object {
     pub material: Material,
     /// The index for `material=array`.
     pub material_index: u32,
+    /// Whether the backs of its triangles are not drawn. They still cast shadows.
+    pub single_sided: bool,
     /// Whether it casts a shadow. A drawn lamp must not, since it would shade everything.
     pub casts: bool,
 }
@@ -222,6 +224,7 @@ impl Object {
             color,
             material: Material::default(),
             material_index: 0,
+            single_sided: false,
             casts: true,
         }
     }
@@ -229,6 +232,26 @@ impl Object {
     /// An object with a material of its own. Its index in the array is 0.
     pub fn made(shape: Shape, place: DMat4, color: DVec3, material: Material) -> Self {
         Self::new(shape, place, color).of(material, 0)
+    }
+
+    /// The indices of the triangles that are drawn for a viewer at a point: all of them, or those
+    /// that turn their fronts to it.
+    pub fn seen_from(&self, eye: DVec3) -> Vec<u32> {
+        let Shape { vertices, indices } = &self.shape;
+        if !self.single_sided {
+            return indices.clone();
+        }
+        let place = |index: u32| {
+            let vertex = vertices.get(index as usize);
+            vertex.map(|vertex| self.world_from_object.transform_point3(vertex.position))
+        };
+        let is_front = |corners: &&[u32]| {
+            let [Some(a), Some(b), Some(c)] = [0, 1, 2].map(|at| place(corners[at])) else {
+                return true;
+            };
+            (b - a).cross(c - a).dot(eye - a) > 0.0
+        };
+        indices.chunks_exact(3).filter(is_front).flatten().copied().collect()
     }
 
     pub(super) fn of(self, material: Material, material_index: u32) -> Self {

@@ -4,6 +4,7 @@
 
 use crate::model::GltfReader;
 use glam::{DAffine2, DMat2, DVec2, DVec4};
+use gltf::texture::{MagFilter, WrappingMode};
 use serde_json::Value;
 
 /// Channels of an image that go to the same channels of a texture of `forward`.
@@ -17,8 +18,45 @@ pub struct ImageChannels {
     /// Whether the image is coded as sRGB.
     pub is_color: bool,
     pub coordinates: Coordinates,
+    /// What the image shows beyond its edges, across and down.
+    pub wraps: [Wrap; 2],
+    /// Whether an enlarged image shows its pixels as squares, instead of what is between them.
+    pub is_blocky: bool,
     /// The bits of the strength of the image, an `f32`; see [`ImageChannels::scaled`].
     strength: u32,
+}
+
+/// What an image shows beyond one of its edges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Wrap {
+    Repeat,
+    Mirror,
+    Clamp,
+}
+
+impl Wrap {
+    fn of(mode: WrappingMode) -> Self {
+        match mode {
+            WrappingMode::Repeat => Self::Repeat,
+            WrappingMode::MirroredRepeat => Self::Mirror,
+            WrappingMode::ClampToEdge => Self::Clamp,
+        }
+    }
+
+    /// The pixel of an image of `count` pixels that is shown at a place in its row, which may be
+    /// beyond the image.
+    pub fn pixel(self, at: i64, count: usize) -> usize {
+        let count = i64::try_from(count).unwrap_or(i64::MAX).clamp(1, i64::MAX / 2);
+        let found = match self {
+            Self::Repeat => at.rem_euclid(count),
+            Self::Clamp => at.clamp(0, count - 1),
+            Self::Mirror => {
+                let place = at.rem_euclid(2 * count);
+                place.min(2 * count - 1 - place)
+            }
+        };
+        usize::try_from(found).unwrap_or_default()
+    }
 }
 
 const RGB: &[usize] = &[0, 1, 2];
@@ -64,8 +102,17 @@ impl ImageChannels {
         channels: &'static [usize],
         is_color: bool,
     ) -> Option<Self> {
-        let (image, coordinates) = (texture.source()?.index(), Coordinates::default());
-        Some(Self { map, image, channels, is_color, coordinates, strength: 1_f32.to_bits() })
+        let sampler = texture.sampler();
+        Some(Self {
+            map,
+            image: texture.source()?.index(),
+            channels,
+            is_color,
+            coordinates: Coordinates::default(),
+            wraps: [sampler.wrap_s(), sampler.wrap_t()].map(Wrap::of),
+            is_blocky: sampler.mag_filter() == Some(MagFilter::Nearest),
+            strength: 1_f32.to_bits(),
+        })
     }
 
     fn at(self, coordinates: Coordinates) -> Self {
@@ -295,5 +342,20 @@ impl Window {
     /// The coordinates at a share of it.
     pub fn at(&self, share: DVec2) -> DVec2 {
         self.low + share * self.size
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Wrap;
+
+    /// Pixels of an image of three, from two to its left: as OpenGL defines the modes of glTF
+    /// (OpenGL 4.6, 8.14.2).
+    #[test]
+    fn modes_are_those_of_opengl() {
+        let row = |wrap: Wrap| (-2..6).map(|at| wrap.pixel(at, 3)).collect::<Vec<_>>();
+        assert_eq!(row(Wrap::Repeat), [1, 2, 0, 1, 2, 0, 1, 2]);
+        assert_eq!(row(Wrap::Clamp), [0, 0, 0, 1, 2, 2, 2, 2]);
+        assert_eq!(row(Wrap::Mirror), [1, 0, 0, 1, 2, 2, 1, 0]);
     }
 }

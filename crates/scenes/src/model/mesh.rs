@@ -14,7 +14,6 @@ use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::Source;
 use gltf::mesh::Mode;
 use lamplight_files::limits::MODEL_CORNERS;
-use lamplight_scene::smooth_normals;
 
 /// The objects of a mesh in its place: one for each primitive of triangles.
 pub fn mesh_objects(
@@ -43,8 +42,7 @@ pub fn mesh_objects(
             let note = format!("{place}: no `TEXCOORD_{}`, which its textures name", own.set);
             reader.notes.insert(note);
         }
-        let vertices = mesh_vertices(reader, &primitive, (&indices, own), &place)?;
-        let shape = Shape { vertices, indices };
+        let shape = mesh_shape(reader, &primitive, (indices, own), &place)?;
         let shape = sheet.placed(reader, shape, &primitive.material())?;
         let shape = shape.transformed(part.world_from_mesh);
         let shape =
@@ -55,7 +53,9 @@ pub fn mesh_objects(
         if let Some(layers) = &mut material.layers {
             layers.thickness *= scale;
         }
-        objects.push((Object::made(shape, DMat4::IDENTITY, color, material), means));
+        let object = Object::made(shape, DMat4::IDENTITY, color, material);
+        let single_sided = !primitive.material().double_sided();
+        objects.push((Object { single_sided, ..object }, means));
     }
     Ok(objects)
 }
@@ -130,12 +130,14 @@ pub fn mesh_coordinates(
     Ok(rows.iter().map(at).map(|at| if at.is_finite() { at } else { DVec2::ZERO }).collect())
 }
 
-fn mesh_vertices(
+/// The vertices and triangles of a primitive. Without normals each triangle has that of its face, and
+/// tangents are then ignored (glTF 2.0, 3.7.2.1).
+fn mesh_shape(
     reader: &GltfReader<'_>,
     primitive: &gltf::Primitive<'_>,
-    (indices, own): (&[u32], Coordinates),
+    (indices, own): (Vec<u32>, Coordinates),
     place: &str,
-) -> Result<Vec<Vertex>, String> {
+) -> Result<Shape, String> {
     let rows = |semantic: gltf::Semantic, name: &str| match primitive.get(&semantic) {
         Some(accessor) => reader.rows(&accessor, &format!("{place}.attributes.{name}")).map(Some),
         None => Ok(None),
@@ -146,32 +148,30 @@ fn mesh_vertices(
     let coordinates = mesh_coordinates(reader, primitive, own, place)?;
     let colors = rows(gltf::Semantic::Colors(0), "COLOR_0")?;
     let vector = |row: &[f64; 4]| DVec3::new(row[0], row[1], row[2]);
-    let points: Vec<DVec3> = positions.iter().map(vector).collect();
-    let smooth = match &normals {
-        Some(_) => Vec::new(),
-        None => smooth_normals(&points, Some(indices)).map_err(|error| error.to_string())?,
-    };
     let row = |rows: &Option<Vec<[f64; 4]>>, index: usize| {
         rows.as_ref().and_then(|rows| rows.get(index).copied())
     };
-    let vertex = |(index, position): (usize, &DVec3)| {
-        let own = row(&normals, index).map(|normal| vector(&normal).normalize_or_zero());
-        let normal = own.or_else(|| smooth.get(index).copied()).unwrap_or(DVec3::Y);
+    let vertex = |(index, position): (usize, &[f64; 4])| {
         let uv = coordinates.get(index).copied().unwrap_or_default();
+        let normal = row(&normals, index).map(|normal| vector(&normal).normalize_or_zero());
         Vertex {
-            position: *position,
-            normal,
+            position: vector(position),
+            normal: normal.unwrap_or(DVec3::Y),
             color: row(&colors, index).map_or(DVec3::ONE, |color| vector(&color)),
             uv,
             light_uv: uv,
             tangent: row(&tangents, index).map_or(DVec4::ZERO, DVec4::from_array),
         }
     };
-    let mut vertices: Vec<Vertex> = points.iter().enumerate().map(vertex).collect();
-    if tangents.is_none() {
-        set_tangents(&mut vertices, indices);
+    let vertices = positions.iter().enumerate().map(vertex).collect();
+    let mut shape = Shape { vertices, indices };
+    if normals.is_none() {
+        shape = shape.faceted();
     }
-    Ok(vertices)
+    if normals.is_none() || tangents.is_none() {
+        set_tangents(&mut shape.vertices, &shape.indices);
+    }
+    Ok(shape)
 }
 
 /// Tangents along u, from the sum over all triangles at a vertex (Lengyel, *Foundations of Game

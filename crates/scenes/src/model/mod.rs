@@ -174,6 +174,13 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
              overflow there, and the picture may be empty"
         ));
     }
+    if objects.iter().all(|object| object.seen_from(eye.position).is_empty()) {
+        reader.notes.insert(
+            "nothing is seen: all faces turn their backs to the viewer, and no material is \
+             double-sided"
+                .to_owned(),
+        );
+    }
     let (lamps, numbers) = nodes::model_lamps(reader, &placed, &bounds, &eye);
     let mut layers = if reader.all_unlit { Vec::new() } else { surface::layer_axes(&objects) };
     let is_mapped = |name: &&str| !matches!(*name, "base_map" | "normal_map" | "occlusion_map");
@@ -181,7 +188,7 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
         layers.push("material_maps=true".to_owned());
     }
     let is_given = !numbers.is_empty();
-    let axes = model_axes(reader, &placed, &sheet, (&lamps, is_given, &layers));
+    let axes = model_axes(reader, &placed, &sheet, (&lamps, is_given));
     if sheet.names.contains("occlusion_map") {
         layers.push("occlusion=map".to_owned());
     }
@@ -225,7 +232,7 @@ fn model_axes(
     reader: &GltfReader<'_>,
     placed: &nodes::PlacedNodes,
     sheet: &Sheet,
-    (lamps, is_given, layers): (&[Lamp], bool, &[String]),
+    (lamps, is_given): (&[Lamp], bool),
 ) -> Vec<String> {
     if reader.all_unlit {
         let textured =
@@ -238,9 +245,8 @@ fn model_axes(
         Some(LampKind::Spot) => "shadow=pcf_3x3,shadow_light=spot",
         _ => "shadow=none",
     };
-    // Layers reflect or transmit their surroundings, so they need image-based lighting.
-    let ambient = if layers.len() > 1 { "ibl" } else { "hemisphere" };
-    let mut chosen = format!("specular=ggx,ambient={ambient},max_lights={most},{shadow}");
+    // Metals and layers reflect their surroundings, and every surface does a little.
+    let mut chosen = format!("specular=ggx,ambient=ibl,max_lights={most},{shadow}");
     let has = |kinds: &[LampKind]| is_given && lamps.iter().any(|lamp| kinds.contains(&lamp.kind));
     if has(&[LampKind::Point, LampKind::Spot]) {
         chosen += ",attenuation=range_gltf";

@@ -12,7 +12,7 @@ use super::GltfReader;
 use super::mesh::{has_triangles, mesh_coordinates};
 use super::nodes::PlacedNodes;
 use crate::maps::blank_texel;
-use crate::model::channels::{Coordinates, ImageChannels, Window, material_parts};
+use crate::model::channels::{Coordinates, ImageChannels, Window, Wrap, material_parts};
 use crate::sets::{Maps, TextureMap};
 use crate::shape::Shape;
 use lamplight_files::limits::{MODEL_CORNERS, MODEL_PIXELS, MODEL_TEXTURES};
@@ -48,15 +48,16 @@ impl Cell {
         Self { index, own, is_shared, window: Window::UNIT }
     }
 
-    /// The coordinates in a texture, in [0, 1), of a position in the cell, in [0, 1].
+    /// The coordinates in a texture of a position in the cell, in [0, 1]. Those in [0, 1] are in the
+    /// image.
     fn in_texture(&self, part: &ImageChannels, share: DVec2) -> DVec2 {
         let at = self.window.at(share);
-        let at = if self.is_shared {
-            at
-        } else {
-            part.coordinates.texture_from_set().transform_point2(at)
-        };
-        at - at.floor()
+        if self.is_shared { at } else { part.coordinates.texture_from_set().transform_point2(at) }
+    }
+
+    /// Whether the sampler can repeat the cell as its only texture.
+    fn is_repeated(parts: &[ImageChannels]) -> bool {
+        parts.iter().all(|part| part.wraps == [Wrap::Repeat; 2])
     }
 }
 
@@ -97,8 +98,8 @@ pub fn texture_sheet(reader: &mut GltfReader<'_>, placed: &PlacedNodes) -> Resul
     Ok(Sheet { maps, names, cells })
 }
 
-/// A cell for each set of textures. A single set is repeated by the sampler. With several, the
-/// repetitions are drawn into the cells.
+/// A cell for each set of textures. A single set that repeats is repeated by the sampler. Otherwise
+/// what is beyond the images is drawn into the cells.
 fn texture_cells(
     reader: &GltfReader<'_>,
     placed: &PlacedNodes,
@@ -128,7 +129,10 @@ fn texture_cells(
         }
     }
     let is_alone = cells.len() == 1;
-    for cell in cells.values_mut().filter(|cell| !(is_alone && cell.is_shared)) {
+    for (parts, cell) in &mut cells {
+        if is_alone && cell.is_shared && Cell::is_repeated(parts) {
+            continue;
+        }
         if let Some((low, high)) = bounds.get(&cell.index) {
             cell.window = Window::around(*low, *high);
         }
@@ -168,7 +172,7 @@ impl Sheet {
         let across = cells_across(self.cells.len());
         let parts = material_parts(reader, material)?;
         let Some(cell) = self.cells.get(&parts) else { return Ok(shape) };
-        if across == 1 {
+        if across == 1 && Cell::is_repeated(&parts) {
             // The window of a single cell is repeated by the sampler.
             let window = cell.window;
             return Ok(shape.map(|vertex| vertex.uv = (vertex.uv - window.low) / window.size));
@@ -223,7 +227,8 @@ fn blank_map(side: usize, texel: DVec4) -> TextureMap {
     TextureMap { width: side, height: side, texels: vec![texel; side * side] }
 }
 
-/// Writes the channels of an image that count into a cell, the nearest pixel for each texel.
+/// Writes the channels of an image that count into a cell: between the pixels of the image, unless its
+/// sampler shows them as squares.
 fn place_image(
     map: &mut TextureMap,
     part: &ImageChannels,
@@ -231,16 +236,33 @@ fn place_image(
     ([left, top], side): ([usize; 2], usize),
     in_texture: impl Fn(DVec2) -> DVec2,
 ) {
+    let size = DVec2::new(image.width as f64, image.height as f64);
     for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
-        let at = in_texture((DVec2::new(x as f64, y as f64) + 0.5) / side as f64);
-        let column = ((at.x * image.width as f64) as usize).min(image.width - 1);
-        let row = ((at.y * image.height as f64) as usize).min(image.height - 1);
-        let own = part.scaled(image.texels[row * image.width + column]);
+        let at = in_texture((DVec2::new(x as f64, y as f64) + 0.5) / side as f64) * size;
+        let own = if part.is_blocky { pixel_at(image, part, at) } else { between(image, part, at) };
+        let own = part.scaled(own);
         let texel = &mut map.texels[(top + y) * map.width + left + x];
         for channel in part.channels {
             texel[*channel] = own[*channel];
         }
     }
+}
+
+/// The pixel at a place in an image, in pixels.
+fn pixel_at(image: &TextureMap, part: &ImageChannels, at: DVec2) -> DVec4 {
+    let [across, down] = part.wraps;
+    let column = across.pixel(at.x.floor() as i64, image.width);
+    let row = down.pixel(at.y.floor() as i64, image.height);
+    image.texels[row * image.width + column]
+}
+
+/// What is between the middles of the four pixels around a place in an image, in pixels.
+fn between(image: &TextureMap, part: &ImageChannels, at: DVec2) -> DVec4 {
+    let low = (at - 0.5).floor();
+    let share = at - 0.5 - low;
+    let pixel = |x: f64, y: f64| pixel_at(image, part, low + DVec2::new(x, y));
+    let [upper, lower] = [0.0, 1.0].map(|y| pixel(0.0, y).lerp(pixel(1.0, y), share.x));
+    upper.lerp(lower, share.y)
 }
 
 /// The bytes of an image as they are in the file.
