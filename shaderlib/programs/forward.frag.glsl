@@ -391,5 +391,10 @@ void main() {
 #if SATURATE
     color = saturate_color(color);
 #endif
+#if ALPHA_TEST
+    if (base.a < 0.5) {
+        discard;
+    }
+#endif
     out_color = vec4(color, base.a);
 }

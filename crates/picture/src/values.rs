@@ -161,7 +161,7 @@ impl UniformValues<'_> {
             ("object", "color") => {
                 let color = self.published(&parsed);
                 let mut color = color.unwrap_or_else(|| vector_values(object.color));
-                color.push(1.0);
+                color.push(object.alpha);
                 Some(color)
             }
             ("materials", field) if !self.lit.needs.material_array => {

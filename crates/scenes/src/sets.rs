@@ -60,6 +60,8 @@ pub struct Object {
     pub world_from_object: DMat4,
     /// Multiplied with the colours of the corners.
     pub color: DVec3,
+    /// Multiplied with the alpha of its texture, for `alpha_test`: less than one half is not drawn.
+    pub alpha: f64,
     /// The material for `material=single`.
     pub material: Material,
     /// The index for `material=array`.
@@ -224,6 +226,7 @@ impl Object {
             color,
             material: Material::default(),
             material_index: 0,
+            alpha: 1.0,
             single_sided: false,
             casts: true,
         }

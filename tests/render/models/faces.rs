@@ -1,6 +1,8 @@
 //! What glTF 2.0 says of faces and of the images on them: normals that are absent, sides, metals, and
 //! what is beyond the edges of an image and between its pixels.
 
+use std::io::Cursor;
+
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
 
@@ -12,12 +14,13 @@ use super::{
 use tempfile::TempDir;
 
 pub fn tests() -> impl Iterator<Item = Trial> {
-    let cases: [(_, fn() -> _); 5] = [
+    let cases: [(_, fn() -> _); 6] = [
         ("flat_without_normals", flat_without_normals),
         ("backs_are_not_drawn", backs_are_not_drawn),
         ("metals_mirror_the_surroundings", metals_mirror),
         ("beyond_the_edges_of_images", beyond_edges),
         ("between_pixels", between_pixels),
+        ("alpha_below_the_cutoff", alpha_below_the_cutoff),
     ];
     cases.into_iter().map(|(name, run)| Trial::test(format!("render/model/face/{name}"), run))
 }
@@ -129,4 +132,42 @@ fn between_pixels() -> Result<(), Failed> {
     let ([linear, _], [_, nearest]) = (shown(9729)?, shown(NEAREST)?);
     demand(is_near(linear, [194; 3], 3), || format!("linear: found {linear:?}, expected 194"))?;
     demand(nearest == WHITE, || format!("nearest: found {nearest:?}, expected white"))
+}
+
+/// A PNG of two by two pixels with alpha.
+fn image_with_alpha(pixels: [[u8; 4]; 4]) -> Result<Vec<u8>, Failed> {
+    let pixels = image::RgbaImage::from_raw(2, 2, pixels.concat()).ok_or("not two by two")?;
+    let mut file = Cursor::new(Vec::new());
+    pixels.write_to(&mut file, image::ImageFormat::Png)?;
+    Ok(file.into_inner())
+}
+
+/// 3.9.4: with MASK, alpha of the cutoff and more is opaque, and less is not drawn. The alpha is that of
+/// the factor and of the texture, multiplied; the cutoff is 0.5 where it is not given.
+fn alpha_below_the_cutoff() -> Result<(), Failed> {
+    // Quarters with alpha 0, 0.2, 0.6 and 1; the factor is one half.
+    let alphas = [0, 51, 153, 255].map(|alpha| [255, 255, 255, alpha]);
+    let (mut document, buffer) = square(&[image_with_alpha(alphas)?]);
+    for (mode, cutoff, seen) in [
+        ("MASK", None, [false, false, false, true]),
+        ("MASK", Some(0.2), [false, false, true, true]),
+        ("MASK", Some(0.09), [false, true, true, true]),
+        ("OPAQUE", None, [true; 4]),
+    ] {
+        document["materials"] = json!([{
+            "alphaMode": mode,
+            "pbrMetallicRoughness": {
+                "baseColorFactor": [1, 1, 1, 0.5], "baseColorTexture": { "index": 0 },
+            },
+            "extensions": { "KHR_materials_unlit": {} },
+        }]);
+        if let Some(cutoff) = cutoff {
+            document["materials"][0]["alphaCutoff"] = json!(cutoff);
+        }
+        let (picture, _) = drawn(&glb(&document, &buffer), &BEFORE)?;
+        let places = [(0.35, 0.35), (0.65, 0.35), (0.35, 0.65), (0.65, 0.65)];
+        let found = places.map(|(x, y)| is_near(pixel(&picture, x, y), WHITE, 0));
+        demand(found == seen, || format!("{mode} {cutoff:?}: {found:?}, expected {seen:?}"))?;
+    }
+    Ok(())
 }

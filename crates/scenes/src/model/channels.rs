@@ -3,6 +3,7 @@
 //! scales it.
 
 use crate::model::GltfReader;
+use crate::model::surface::is_masked;
 use glam::{DAffine2, DMat2, DVec2, DVec4};
 use gltf::texture::{MagFilter, WrappingMode};
 use serde_json::Value;
@@ -60,6 +61,7 @@ impl Wrap {
 }
 
 const RGB: &[usize] = &[0, 1, 2];
+const RGBA: &[usize] = &[0, 1, 2, 3];
 
 /// A texture of an extension that the parser does not know: the extension, its field, the name of
 /// the binding, the channels, and whether it is a colour.
@@ -155,7 +157,9 @@ pub fn material_parts(
         None => field.to_owned(),
     };
     if let Some(info) = own.base_color_texture() {
-        parts.extend(known(&info, "base_map", RGB, true));
+        // The alpha of materials that are not masked counts for nothing.
+        let channels = if is_masked(material) { RGBA } else { RGB };
+        parts.extend(known(&info, "base_map", channels, true));
     }
     // An unlit material uses no other textures.
     if material.unlit() {

@@ -4,7 +4,7 @@
 use crate::model::GltfReader;
 use crate::model::channels::Coordinates;
 use crate::model::nodes::PlacedMesh;
-use crate::model::surface::{Means, read_surface};
+use crate::model::surface::{Means, read_surface, tested_alpha};
 use crate::model::texture::Sheet;
 use crate::sets::Object;
 use crate::shape::{Shape, Vertex};
@@ -55,7 +55,8 @@ pub fn mesh_objects(
         }
         let object = Object::made(shape, DMat4::IDENTITY, color, material);
         let single_sided = !primitive.material().double_sided();
-        objects.push((Object { single_sided, ..object }, means));
+        let alpha = tested_alpha(&primitive.material());
+        objects.push((Object { alpha, single_sided, ..object }, means));
     }
     Ok(objects)
 }

@@ -234,10 +234,14 @@ fn model_axes(
     sheet: &Sheet,
     (lamps, is_given): (&[Lamp], bool),
 ) -> Vec<String> {
+    let mut drawn = drawn_materials(reader.document, placed);
+    let masked = drawn.any(|material| surface::is_masked(&material)).then_some("alpha_test=true");
     if reader.all_unlit {
         let textured =
             if sheet.names.contains("base_map") { "base_map=true" } else { "base_map=false" };
-        return ["lights=none", "ambient=none", textured].map(str::to_owned).to_vec();
+        let mut chosen = ["lights=none", "ambient=none", textured].map(str::to_owned).to_vec();
+        chosen.extend(masked.map(str::to_owned));
+        return chosen;
     }
     let most = [1, 4, 10].into_iter().find(|most| lamps.len() <= *most).unwrap_or(10);
     let shadow = match lamps.first().map(|lamp| lamp.kind) {
@@ -263,7 +267,7 @@ fn model_axes(
     if drawn_materials(reader.document, placed).any(|material| material.double_sided()) {
         chosen += ",two_sided=true";
     }
-    chosen.split(',').map(str::to_owned).collect()
+    chosen.split(',').chain(masked).map(str::to_owned).collect()
 }
 
 fn model_eye(placed: &nodes::PlacedNodes, bounds: &nodes::Ball, view: View) -> Result<Eye, String> {

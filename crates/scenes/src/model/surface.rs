@@ -7,6 +7,7 @@ use crate::model::channels::is_drawn;
 use crate::model::document::{ignored_extension, is_read};
 use crate::sets::{Material, Object};
 use glam::{DVec2, DVec3};
+use gltf::material::AlphaMode;
 use serde_json::{Map, Value};
 
 /// The colour of a surface, its material, and the means of its textures, which [`Means::apply`]
@@ -137,10 +138,28 @@ fn texture_means(
 
 /// Notes on what the programs do not have.
 fn left_out(reader: &mut GltfReader<'_>, material: &gltf::Material<'_>) {
-    if material.alpha_mode() != gltf::material::AlphaMode::Opaque {
-        let note = "ignored, since no program supports it: transparency";
-        reader.notes.insert(note.to_owned());
+    let note = match material.alpha_mode() {
+        AlphaMode::Opaque => return,
+        AlphaMode::Mask => "shadows are those of whole faces, without what their alpha leaves out",
+        AlphaMode::Blend => "ignored, since no program supports it: transparency by alpha",
+    };
+    reader.notes.insert(note.to_owned());
+}
+
+/// Whether points of a material are left out by their alpha.
+pub fn is_masked(material: &gltf::Material<'_>) -> bool {
+    material.alpha_mode() == AlphaMode::Mask
+}
+
+/// The alpha of an object, such that a product with its texture below one half is what the material
+/// leaves out (glTF 2.0, 3.9.4). Everything else is opaque.
+pub fn tested_alpha(material: &gltf::Material<'_>) -> f64 {
+    let cutoff = f64::from(material.alpha_cutoff().unwrap_or(0.5));
+    if !is_masked(material) || cutoff <= 0.0 {
+        return 1.0;
     }
+    let [_, _, _, alpha] = material.pbr_metallic_roughness().base_color_factor();
+    f64::from(alpha) * 0.5 / cutoff
 }
 
 /// Axes of `forward`, and whether a material needs them.
