@@ -7,6 +7,7 @@ mod lamps;
 mod layers;
 mod maps;
 mod placed;
+mod read;
 mod sides;
 mod wrong;
 
@@ -41,6 +42,7 @@ pub fn tests() -> Vec<Trial> {
         .chain(layers::tests())
         .chain(maps::tests())
         .chain(placed::tests())
+        .chain(read::tests())
         .chain(sides::tests())
         .chain(wrong::tests())
         .collect()

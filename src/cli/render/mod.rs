@@ -49,7 +49,7 @@ pub struct Arguments {
     /// The scene [default: the scene of the preset, or `casters`].
     #[arg(long, value_name = "NAME")]
     scene: Option<String>,
-    /// Draw this model instead of a scene: a binary glTF file (`.glb`).
+    /// Draw this model instead of a scene: a glTF file (`.glb`, or `.gltf` with the files beside it).
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "all"])]
     model: Option<PathBuf>,
     /// The view of the model: the number of one of its cameras, or the positions of the eye and of

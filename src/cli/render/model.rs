@@ -1,6 +1,7 @@
 //! `lamplight render --model`: what is drawn comes from a file.
 
 use std::io::Write;
+use std::path::Path;
 
 use glam::DVec3;
 
@@ -40,7 +41,12 @@ pub fn read_model(arguments: &Arguments) -> Result<Option<Model>, Failure> {
     let shown = path.display();
     let bytes = crate::input::read_file(path, MODEL_BYTES)
         .map_err(|error| Failure::input(format!("cannot read `{shown}`: {error}")))?;
-    let model = model::read_model(&bytes, arguments.camera.unwrap_or(View::Own))
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let beside = |name: &str| {
+        let bytes = crate::input::read_file(&folder.join(name), MODEL_BYTES);
+        bytes.map_err(|error| format!("cannot read `{name}`: {error}"))
+    };
+    let model = model::read_model_beside(&bytes, arguments.camera.unwrap_or(View::Own), &beside)
         .map_err(|error| Failure::input(format!("`{shown}`: {error}")))?;
     for note in &model.notes {
         writeln!(terminal::stderr(), "note: `{shown}`: {note}")?;

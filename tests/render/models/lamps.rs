@@ -7,17 +7,18 @@ use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
 
 use super::sides::{seen, seen_with};
-use super::{BEFORE, demand, drawn, glb, square};
+use super::{BEFORE, demand, drawn, glb, is_near, pixel, square};
 
 const FRONT: &str = BEFORE[1];
 
 pub fn tests() -> impl Iterator<Item = Trial> {
-    let cases: [(_, fn() -> _); 6] = [
+    let cases: [(_, fn() -> _); 7] = [
         ("inverse_square", inverse_square),
         ("range_ends", range_ends),
         ("cone_between_its_angles", cone_between),
         ("second_sun_is_whole", second_sun_is_whole),
         ("eleventh_is_noted", eleventh_is_noted),
+        ("daylight_is_exposed", daylight_is_exposed),
         ("large_models_are_lit", large_models_are_lit),
     ];
     cases.into_iter().map(|(name, run)| Trial::test(format!("render/model/lamp/{name}"), run))
@@ -111,6 +112,21 @@ fn eleventh_is_noted() -> Result<(), Failed> {
     let (_, stderr) = drawn(&glb(&document, &buffer), &[])?;
     let note = "of 11 lamps, the first 10 are drawn";
     demand(stderr.contains(note), || format!("expected `{note}` in `{stderr}`"))
+}
+
+/// A sun of 256 pi lux gives a white surface 256 times the colour 1, which is eight stops too much. The
+/// note says so, and the picture is then right: half of it where the lamp is at 60 degrees.
+fn daylight_is_exposed() -> Result<(), Failed> {
+    let turn = [0.0, (PI / 6.0).sin(), 0.0, (PI / 6.0).cos()];
+    let sun =
+        (json!({ "type": "directional", "intensity": 256.0 * PI }), json!({ "rotation": turn }));
+    let (document, buffer) = lit_square(&[sun]);
+    let alone = ["--set", "ambient=none,shadow=none,shadow_light=spot"];
+    let arguments = [&BEFORE[..], &alone, &["--exposure", "-8"]].concat();
+    let (picture, stderr) = drawn(&glb(&document, &buffer), &arguments)?;
+    demand(stderr.contains("256 times what a picture shows: try --exposure -8"), || stderr)?;
+    let found = pixel(&picture, 0.5, 0.5);
+    demand(is_near(found, [188; 3], 2), || format!("found {found:?}, expected 188, one half"))
 }
 
 /// A model without lamps looks the same at any size.

@@ -71,7 +71,7 @@ const WRONG: &[Wrong] = &[
         "sparse",
         || {
             changed(|document| {
-                document["accessors"][0]["sparse"] = json!({ "count": 1,
+                document["accessors"][0]["sparse"] = json!({ "count": 5,
                     "indices": { "bufferView": 1, "componentType": 5123 },
                     "values": { "bufferView": 0 } });
             })

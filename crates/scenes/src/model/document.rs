@@ -12,7 +12,7 @@ use serde_json::value::RawValue;
 use serde_json::{Map, Value};
 
 /// Extensions that are read.
-const READ: [&str; 16] = [
+const READ: [&str; 17] = [
     "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
@@ -27,6 +27,7 @@ const READ: [&str; 16] = [
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_materials_volume",
+    "KHR_mesh_quantization",
     "KHR_node_visibility",
     "KHR_texture_transform",
 ];

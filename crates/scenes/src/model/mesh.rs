@@ -1,35 +1,30 @@
-//! Primitives of meshes as objects in world space. Their numbers come from accessors, each checked
-//! against the bytes that are there.
+//! Primitives of meshes as objects in world space.
 
 use crate::model::GltfReader;
 use crate::model::channels::Coordinates;
-use crate::model::nodes::PlacedMesh;
+use crate::model::deform::{Skinning, morph};
+use crate::model::nodes::{PlacedMesh, PlacedNodes};
 use crate::model::surface::{Means, read_surface, tested_alpha};
 use crate::model::texture::Sheet;
 use crate::sets::Object;
 use crate::shape::{Shape, Vertex};
 use glam::{DMat4, DVec2, DVec3, DVec4};
-use gltf::Accessor;
-use gltf::accessor::{DataType, Dimensions};
-use gltf::buffer::Source;
 use gltf::mesh::Mode;
 use lamplight_files::limits::MODEL_CORNERS;
 
 /// The objects of a mesh in its place: one for each primitive of triangles.
 pub fn mesh_objects(
     reader: &mut GltfReader<'_>,
-    part: &PlacedMesh,
+    (part, placed): (&PlacedMesh, &PlacedNodes),
     sheet: &Sheet,
     corners: &mut usize,
 ) -> Result<Vec<(Object, Means)>, String> {
     let document = reader.document;
     let mesh = document.meshes().nth(part.mesh).ok_or("a node has a mesh that is not there")?;
     let mut objects = Vec::new();
+    let skinning = Skinning::of(reader, part, placed)?;
     for primitive in mesh.primitives() {
         let place = format!("meshes[{}].primitives[{}]", part.mesh, primitive.index());
-        if primitive.morph_targets().next().is_some() {
-            reader.notes.insert("morph targets are ignored".to_owned());
-        }
         let Some(indices) = triangle_indices(reader, &primitive, &place)? else { continue };
         // Vertices that no triangle uses take memory too, again for each node that has the mesh.
         let count = primitive.get(&gltf::Semantic::Positions).map_or(0, |rows| rows.count());
@@ -42,11 +37,13 @@ pub fn mesh_objects(
             let note = format!("{place}: no `TEXCOORD_{}`, which its textures name", own.set);
             reader.notes.insert(note);
         }
-        let shape = mesh_shape(reader, &primitive, (indices, own), &place)?;
-        let shape = sheet.placed(reader, shape, &primitive.material())?;
-        let shape = shape.transformed(part.world_from_mesh);
         let shape =
-            if part.world_from_mesh.determinant() < 0.0 { mirror_winding(shape) } else { shape };
+            mesh_shape(reader, &primitive, (indices, own), (part, skinning.as_ref()), &place)?;
+        let shape = sheet.placed(reader, shape, &primitive.material())?;
+        let shape = match skinning {
+            Some(_) => shape,
+            None => placed_shape(shape, part.world_from_mesh),
+        };
         let (color, mut material, means) = read_surface(reader, &primitive.material())?;
         // The thickness of a volume scales with the mesh.
         let scale = part.world_from_mesh.determinant().abs().cbrt();
@@ -64,6 +61,11 @@ pub fn mesh_objects(
 /// Whether a primitive is made of triangles. Others are left out.
 pub fn has_triangles(primitive: &gltf::Primitive<'_>) -> bool {
     matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)
+}
+
+fn placed_shape(shape: Shape, world_from_mesh: DMat4) -> Shape {
+    let shape = shape.transformed(world_from_mesh);
+    if world_from_mesh.determinant() < 0.0 { mirror_winding(shape) } else { shape }
 }
 
 /// Mirrored triangles wind the other way round.
@@ -137,6 +139,7 @@ fn mesh_shape(
     reader: &GltfReader<'_>,
     primitive: &gltf::Primitive<'_>,
     (indices, own): (Vec<u32>, Coordinates),
+    (part, skinning): (&PlacedMesh, Option<&Skinning>),
     place: &str,
 ) -> Result<Shape, String> {
     let rows = |semantic: gltf::Semantic, name: &str| match primitive.get(&semantic) {
@@ -164,8 +167,16 @@ fn mesh_shape(
             tangent: row(&tangents, index).map_or(DVec4::ZERO, DVec4::from_array),
         }
     };
-    let vertices = positions.iter().enumerate().map(vertex).collect();
+    let mut vertices: Vec<Vertex> = positions.iter().enumerate().map(vertex).collect();
+    morph(reader, primitive, part, &mut vertices, place)?;
+    let is_mirrored = match skinning {
+        Some(skinning) => skinning.apply(reader, primitive, &mut vertices, place)?,
+        None => false,
+    };
     let mut shape = Shape { vertices, indices };
+    if is_mirrored {
+        shape = mirror_winding(shape);
+    }
     if normals.is_none() {
         shape = shape.faceted();
     }
@@ -202,84 +213,4 @@ fn set_tangents(vertices: &mut [Vertex], indices: &[u32]) {
         let is_mirrored = vertex.normal.cross(tangent).dot(down) > 0.0;
         vertex.tangent = tangent.extend(if is_mirrored { -1.0 } else { 1.0 });
     }
-}
-
-impl<'b> GltfReader<'b> {
-    /// The bytes of a view of the file's own buffer.
-    pub fn view(&self, view: &gltf::buffer::View<'_>, place: &str) -> Result<&'b [u8], String> {
-        let buffer = view.buffer();
-        if let Source::Uri(_) = buffer.source() {
-            let index = buffer.index();
-            return Err(format!("{place}: buffer {index} is in another file; export one `.glb`"));
-        }
-        let end = view.offset().checked_add(view.length());
-        let bytes = end.and_then(|end| self.blob.get(view.offset()..end));
-        bytes.ok_or_else(|| {
-            let (index, has) = (view.index(), self.blob.len());
-            format!("{place}: buffer view {index} ends beyond the {has} bytes of the file's buffer")
-        })
-    }
-
-    /// The rows of an accessor as numbers, normalised ones in [0, 1] or [-1, 1].
-    pub fn rows(&self, accessor: &Accessor<'_>, place: &str) -> Result<Vec<[f64; 4]>, String> {
-        let wrong = |what: String| format!("{place}: accessor {} {what}", accessor.index());
-        let (count, size) = (accessor.count(), accessor.data_type().size());
-        if count > MODEL_CORNERS {
-            return Err(wrong(format!("has {count} rows, more than {MODEL_CORNERS}")));
-        }
-        if accessor.sparse().is_some() {
-            return Err(wrong("is sparse, which is not read".to_owned()));
-        }
-        let components = match accessor.dimensions() {
-            Dimensions::Scalar => 1,
-            Dimensions::Vec2 => 2,
-            Dimensions::Vec3 => 3,
-            Dimensions::Vec4 => 4,
-            _ => return Err(wrong("is a matrix".to_owned())),
-        };
-        let Some(view) = accessor.view() else { return Ok(vec![[0.0; 4]; count]) };
-        let bytes = self.view(&view, place)?;
-        let stride = view.stride().unwrap_or(components * size);
-        let last = count.checked_sub(1).and_then(|rows| rows.checked_mul(stride));
-        let end = last.and_then(|at| at.checked_add(accessor.offset() + components * size));
-        if count > 0 && end.is_none_or(|end| end > bytes.len()) {
-            let has = bytes.len();
-            return Err(wrong(format!("ends beyond the {has} bytes of its buffer view")));
-        }
-        let row = |index: usize| {
-            let start = index * stride + accessor.offset();
-            let mut row = [0.0; 4];
-            for (part, number) in row.iter_mut().enumerate().take(components) {
-                let at = start + part * size;
-                *number = number_at(&bytes[at..at + size], accessor);
-            }
-            row
-        };
-        let rows: Vec<[f64; 4]> = (0..count).map(row).collect();
-        if rows.iter().flatten().any(|number| !number.is_finite()) {
-            return Err(wrong("has numbers that are not finite".to_owned()));
-        }
-        Ok(rows)
-    }
-
-    /// The whole numbers of an accessor of indices.
-    pub fn indices(&self, accessor: &Accessor<'_>, place: &str) -> Result<Vec<u32>, String> {
-        let rows = self.rows(accessor, place)?;
-        Ok(rows.into_iter().map(|row| row[0].max(0.0) as u32).collect())
-    }
-}
-
-fn number_at(bytes: &[u8], accessor: &Accessor<'_>) -> f64 {
-    let mut four = [0; 4];
-    four[..bytes.len()].copy_from_slice(bytes);
-    let word = u32::from_le_bytes(four);
-    let (value, largest) = match accessor.data_type() {
-        DataType::F32 => return f64::from(f32::from_bits(word)),
-        DataType::U32 => (f64::from(word), f64::from(u32::MAX)),
-        DataType::U16 => (f64::from(word as u16), 65535.0),
-        DataType::U8 => (f64::from(word as u8), 255.0),
-        DataType::I16 => (f64::from(word as u16 as i16), 32767.0),
-        DataType::I8 => (f64::from(word as u8 as i8), 127.0),
-    };
-    if accessor.normalized() { (value / largest).max(-1.0) } else { value }
 }

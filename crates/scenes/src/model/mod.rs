@@ -1,12 +1,15 @@
-//! Models of users: a binary glTF file as a scene.
+//! Models of users: a glTF file as a scene.
 //!
 //! `bytes -> document -> meshes in their places, lamps, textures -> scene`
 //!
 //! What the programs do not have is left out, and a note says so. What is broken is an error that
 //! names its place in the document. All memory is bounded by [`limits`](lamplight_files::limits).
 
+mod accessor;
 mod channels;
+mod deform;
 mod document;
+mod files;
 mod mesh;
 mod nodes;
 mod surface;
@@ -17,6 +20,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+pub use self::files::Files;
+use self::files::{BufferBytes, buffer_bytes, structure_bytes};
 pub use self::surface::Lacks;
 use self::surface::Means;
 use self::texture::Sheet;
@@ -75,7 +80,8 @@ pub enum View {
 /// A document that is being read, and what is gathered from it.
 struct GltfReader<'b> {
     document: &'b gltf::Document,
-    blob: &'b [u8],
+    buffers: &'b [BufferBytes<'b>],
+    files: &'b Files<'b>,
     notes: BTreeSet<String>,
     /// Means of images, by number and whether they are colours.
     means: BTreeMap<(usize, bool), DVec3>,
@@ -83,52 +89,70 @@ struct GltfReader<'b> {
     all_unlit: bool,
 }
 
-/// Reads a binary glTF file.
+/// Reads a glTF file without others beside it: binary, or a document whose data are in it.
 ///
 /// # Errors
-/// In words, with the place in the document: a file that is not binary glTF, or that is broken or
-/// too large.
+/// Those of [`read_model_beside`].
 pub fn read_model(bytes: &[u8], view: View) -> Result<Model, String> {
+    read_model_beside(bytes, view, &|path| Err(format!("`{path}` is not read")))
+}
+
+/// Reads a glTF file: binary (`.glb`), or a document (`.gltf`). `files` reads those that it names.
+///
+/// # Errors
+/// In words, with the place in the document: a file that is not glTF, or that is broken or too
+/// large.
+pub fn read_model_beside(bytes: &[u8], view: View, files: &Files<'_>) -> Result<Model, String> {
     if bytes.len() as u64 > MODEL_BYTES {
         return Err(format!("{} bytes are more than {MODEL_BYTES}", bytes.len()));
     }
     let (json, blob) = document_and_bytes(bytes)?;
+    if structure_bytes(json) > MODEL_JSON_BYTES {
+        return Err(format!("its document has more bytes than {MODEL_JSON_BYTES}"));
+    }
     // The crate that reads documents panics at some that are broken.
     let read = || -> Result<Model, String> {
         let mut notes = BTreeSet::new();
         let document = document::read_document(json, &mut notes)?;
+        let buffers = buffer_bytes(&document, blob, files);
+        let total: usize = buffers.iter().flatten().map(|bytes| bytes.len()).sum();
+        if total as u64 > MODEL_BYTES {
+            return Err(format!("{total} bytes of buffers are more than {MODEL_BYTES}"));
+        }
+        let (document, buffers) = (&document, &buffers[..]);
         let means = BTreeMap::new();
-        let mut reader = GltfReader { document: &document, blob, notes, means, all_unlit: false };
+        let mut reader = GltfReader { document, buffers, files, notes, means, all_unlit: false };
         model_scene(&mut reader, view)
     };
     catch_panics(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
 }
 
-/// The JSON document of a binary file, and the bytes of its buffer.
+/// The JSON document of a file, and the bytes of the buffer in a binary one.
 fn document_and_bytes(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
     const HEADER: usize = 12;
     if !bytes.starts_with(b"glTF") {
-        return Err("the file is not a binary glTF file (`.glb`)".to_owned());
+        return match bytes.trim_ascii_start().first() {
+            Some(b'{') => Ok((bytes, &[])),
+            _ => {
+                Err("the file is not a binary glTF file (`.glb`), nor a document of glTF"
+                    .to_owned())
+            }
+        };
     }
     let version = word_at(bytes, 4)?;
     if version != 2 {
         return Err(format!("glTF of version {version} is not read, only of version 2"));
     }
     let (json, after) = chunk_bytes(bytes, HEADER, b"JSON")?;
-    if json.len() > MODEL_JSON_BYTES {
-        return Err(format!("its document has more bytes than {MODEL_JSON_BYTES}"));
+    if after + 8 > bytes.len() {
+        return Ok((json, &[]));
     }
-    let has_more = after + 8 <= bytes.len();
-    let blob = if has_more {
-        chunk_bytes(bytes, after, b"BIN\0").map(|chunk| chunk.0)
-    } else {
-        Ok(&[][..])
-    };
     let length = json.len();
     let unpadded = format!(
         "the chunk at byte {HEADER} has {length} bytes; glTF wants multiples of 4, filled with spaces"
     );
-    let blob = blob.map_err(|problem| if length % 4 == 0 { problem } else { unpadded })?;
+    let (blob, _) = chunk_bytes(bytes, after, b"BIN\0")
+        .map_err(|problem| if length.is_multiple_of(4) { problem } else { unpadded })?;
     Ok((json, blob))
 }
 
@@ -160,7 +184,7 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
     let mut found = Vec::new();
     let mut corners = 0;
     for part in &placed.parts {
-        found.extend(mesh::mesh_objects(reader, part, &sheet, &mut corners)?);
+        found.extend(mesh::mesh_objects(reader, (part, &placed), &sheet, &mut corners)?);
     }
     let (objects, means): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     if objects.is_empty() {

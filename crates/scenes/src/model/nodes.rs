@@ -1,6 +1,6 @@
 //! Walks the nodes of a scene: meshes, cameras and lights with their transforms.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use gltf::camera::Projection;
@@ -15,6 +15,10 @@ use lamplight_files::limits::{MODEL_NESTING, MODEL_NODES};
 pub struct PlacedMesh {
     pub mesh: usize,
     pub world_from_mesh: DMat4,
+    /// The number of its skin.
+    pub skin: Option<usize>,
+    /// The weights of its morph targets.
+    pub weights: Vec<f64>,
 }
 
 /// A camera and its transform to world space.
@@ -41,6 +45,8 @@ pub struct PlacedNodes {
     pub parts: Vec<PlacedMesh>,
     pub cameras: Vec<GltfCamera>,
     lights: Vec<GltfLight>,
+    /// From each node to the world.
+    pub worlds: BTreeMap<usize, DMat4>,
 }
 
 /// A ball around all vertices.
@@ -83,6 +89,7 @@ pub fn walk_scene(reader: &mut GltfReader<'_>) -> Result<PlacedNodes, String> {
         if is_hidden(&node) {
             continue;
         }
+        placed.worlds.entry(node.index()).or_insert(world);
         take_node(reader, &node, world, &mut placed)?;
         open.extend(node.children().map(|child| (child, world, depth + 1)));
     }
@@ -114,11 +121,14 @@ fn take_node(
     world: DMat4,
     placed: &mut PlacedNodes,
 ) -> Result<(), String> {
-    if node.skin().is_some() {
-        reader.notes.insert("skins are ignored: the model is drawn in its rest pose".to_owned());
-    }
     if let Some(mesh) = node.mesh() {
-        let at = |own: DMat4| PlacedMesh { mesh: mesh.index(), world_from_mesh: world * own };
+        let weights = node.weights().or(mesh.weights()).unwrap_or_default();
+        let at = |own: DMat4| PlacedMesh {
+            mesh: mesh.index(),
+            world_from_mesh: world * own,
+            skin: node.skin().map(|skin| skin.index()),
+            weights: weights.iter().map(|weight| f64::from(*weight)).collect(),
+        };
         placed.parts.extend(mesh_instances(reader, node)?.into_iter().map(at));
         if placed.parts.len() > MODEL_NODES {
             return Err(format!("nodes[{}]: more than {MODEL_NODES} meshes", node.index()));
@@ -240,7 +250,24 @@ pub fn model_lamps(
         reader.notes.insert(format!("of {count} lamps, the first {MOST} are drawn"));
     }
     let lights = placed.lights.iter().take(MOST);
-    lights.map(|light| (light.lamp(bounds), light.numbers)).unzip()
+    let (lamps, numbers): (Vec<Lamp>, _) =
+        lights.map(|light| (light.lamp(bounds), light.numbers)).unzip();
+    reader.notes.extend(exposure_note(&lamps));
+    (lamps, numbers)
+}
+
+/// The exposure for lamps that together are far too bright: a white surface in the middle of the
+/// model has the sum of their colours.
+fn exposure_note(lamps: &[Lamp]) -> Option<String> {
+    /// Pictures show up to 1. Some more is a highlight.
+    const BRIGHT: f64 = 8.0;
+    let sum: DVec3 = lamps.iter().map(|lamp| lamp.color).sum();
+    let brightest = sum.max_element();
+    let stops = -brightest.log2().round();
+    let note = "its lamps light a white surface with";
+    (brightest > BRIGHT && stops.is_finite()).then(|| {
+        format!("{note} {brightest:.0} times what a picture shows: try --exposure {stops}")
+    })
 }
 
 impl GltfLight {

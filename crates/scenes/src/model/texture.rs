@@ -1,6 +1,7 @@
 //! Puts the textures of all materials on one sheet (an atlas), since the programs have one texture
 //! of each kind.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 
@@ -9,6 +10,7 @@ use gltf::image::Source;
 use image::{DynamicImage, ImageDecoder as _, ImageError};
 
 use super::GltfReader;
+use super::files::uri_bytes;
 use super::mesh::{has_triangles, mesh_coordinates};
 use super::nodes::PlacedNodes;
 use crate::maps::blank_texel;
@@ -266,11 +268,18 @@ fn between(image: &TextureMap, part: &ImageChannels, at: DVec2) -> DVec4 {
 }
 
 /// The bytes of an image as they are in the file.
-fn image_bytes<'b>(reader: &GltfReader<'b>, index: usize, place: &str) -> Result<&'b [u8], String> {
+fn image_bytes<'b>(
+    reader: &GltfReader<'b>,
+    index: usize,
+    place: &str,
+) -> Result<Cow<'b, [u8]>, String> {
     let image = reader.document.images().nth(index).ok_or(format!("{place}: is not there"))?;
     match image.source() {
-        Source::View { view, .. } => reader.view(&view, place),
-        Source::Uri { .. } => Err(format!("{place}: is in another file; export one `.glb`")),
+        Source::View { view, .. } => reader.view(&view, place).map(Cow::Borrowed),
+        Source::Uri { uri, .. } => {
+            let bytes = uri_bytes(uri, reader.files).map(Cow::Owned);
+            bytes.map_err(|reason| format!("{place}: {reason}"))
+        }
     }
 }
 
