@@ -4,7 +4,10 @@ use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use super::{BEFORE, demand, drawn, glb, pixel, render, square};
+use super::{
+    BEFORE, BLUE, GREEN, RED, WHITE, demand, drawn, glb, has_quarters, image, is_near, pixel,
+    render, square,
+};
 
 /// An axis, and the extensions of a material that needs it.
 type Layer = (&'static str, fn() -> Value);
@@ -44,10 +47,11 @@ pub fn tests() -> impl Iterator<Item = Trial> {
     let each = LAYERS
         .iter()
         .map(|layer| Trial::test(format!("render/model/layer/{}", layer.0), || is_drawn(layer)));
-    let others: [(_, fn() -> _); 5] = [
+    let others: [(_, fn() -> _); 6] = [
         ("none_is_chosen_for_nothing", nothing_is_chosen),
         ("emission_has_its_strength", emission_has_its_strength),
         ("unlit_beside_lit", unlit_beside_lit),
+        ("unlit_image_beside_lit", unlit_image_beside_lit),
         ("omissions_are_reported", omissions_are_reported),
         ("exclusions_are_reported", exclusions_are_reported),
     ];
@@ -132,6 +136,28 @@ fn unlit_beside_lit() -> Result<(), Failed> {
     demand(found.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1), || {
         format!("expected {expected:?} in the middle, found {found:?}")
     })
+}
+
+/// The image of an unlit surface beside a lit one is there as it is, and without `material_maps` its
+/// mean: of red, green, blue and white, linear, a half of each channel, which is 188.
+fn unlit_image_beside_lit() -> Result<(), Failed> {
+    let (mut document, buffer) = square(&[image([RED, GREEN, BLUE, WHITE])?]);
+    document["materials"] = json!([
+        { "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } },
+          "extensions": { "KHR_materials_unlit": {} } },
+        {},
+    ]);
+    let mut part = document["meshes"][0]["primitives"][0].clone();
+    part["material"] = json!(1);
+    document["meshes"] = json!([document["meshes"][0], { "primitives": [part] }]);
+    document["nodes"] = json!([{ "mesh": 0 }, { "mesh": 1, "translation": [5.0, 0.0, 0.0] }]);
+    document["scenes"] = json!([{ "nodes": [0, 1] }]);
+    let file = glb(&document, &buffer);
+    let (picture, _) = drawn(&file, &BEFORE)?;
+    has_quarters(&picture, [RED, GREEN, BLUE, WHITE])?;
+    let (mean, _) = drawn(&file, &[&BEFORE[..], &["--set", "material_maps=false"]].concat())?;
+    let found = pixel(&mean, 0.35, 0.35);
+    demand(is_near(found, [188; 3], 2), || format!("expected the mean, 188, found {found:?}"))
 }
 
 /// The texture of the coat's normals and unknown extensions are named.

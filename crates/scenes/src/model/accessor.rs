@@ -3,7 +3,7 @@
 use crate::model::GltfReader;
 use glam::DMat4;
 use gltf::Accessor;
-use gltf::accessor::sparse::IndexType;
+use gltf::accessor::sparse::{IndexType, Sparse};
 use gltf::accessor::{DataType, Dimensions};
 use lamplight_files::limits::MODEL_CORNERS;
 
@@ -93,39 +93,51 @@ impl<'b> GltfReader<'b> {
             }
         };
         if let Some(sparse) = accessor.sparse() {
-            let (indices, values) = (sparse.indices(), sparse.values());
-            let count = sparse.count();
-            if count > rows {
-                return Err(wrong(format!("has {rows} rows, and {count} in its sparse part")));
-            }
-            let index_kind = match indices.index_type() {
-                IndexType::U8 => DataType::U8,
-                IndexType::U16 => DataType::U16,
-                IndexType::U32 => DataType::U32,
-            };
-            let list = Layout {
-                offset: indices.offset(),
-                stride: index_kind.size(),
-                rows: count,
-                components: 1,
-                kind: index_kind,
-                is_normalized: false,
-            };
-            let list = list.read(self.view(&indices.view(), place)?).map_err(wrong)?;
-            let (offset, stride) = (values.offset(), packed);
-            let own = Layout { offset, stride, rows: count, components, kind, is_normalized };
-            let own = own.read(self.view(&values.view(), place)?).map_err(wrong)?;
-            for (index, row) in list.iter().zip(own.chunks_exact(components)) {
-                let start = *index as usize * components;
-                let replaced = numbers.get_mut(start..start + components);
-                let beyond = || wrong(format!("has {rows} rows, and a sparse one at {index}"));
-                replaced.ok_or_else(beyond)?.copy_from_slice(row);
-            }
+            let own = Layout { offset: 0, stride: packed, rows, components, kind, is_normalized };
+            self.replace_rows(&sparse, own, &mut numbers, place).map_err(wrong)?;
         }
         if numbers.iter().any(|number| !number.is_finite()) {
             return Err(wrong("has numbers that are not finite".to_owned()));
         }
         Ok(numbers)
+    }
+
+    /// Replaces the rows that the sparse part of an accessor lists. `all` is the layout of all rows.
+    fn replace_rows(
+        &self,
+        sparse: &Sparse<'_>,
+        all: Layout,
+        numbers: &mut [f64],
+        place: &str,
+    ) -> Result<(), String> {
+        let (indices, values) = (sparse.indices(), sparse.values());
+        let (rows, count, components) = (all.rows, sparse.count(), all.components);
+        if count > rows {
+            return Err(format!("has {rows} rows, and {count} in its sparse part"));
+        }
+        let kind = match indices.index_type() {
+            IndexType::U8 => DataType::U8,
+            IndexType::U16 => DataType::U16,
+            IndexType::U32 => DataType::U32,
+        };
+        let list = Layout {
+            offset: indices.offset(),
+            stride: kind.size(),
+            rows: count,
+            components: 1,
+            kind,
+            is_normalized: false,
+        };
+        let list = list.read(self.view(&indices.view(), place)?)?;
+        let own = Layout { offset: values.offset(), rows: count, ..all };
+        let own = own.read(self.view(&values.view(), place)?)?;
+        for (index, row) in list.iter().zip(own.chunks_exact(components)) {
+            let start = *index as usize * components;
+            let replaced = numbers.get_mut(start..start + components);
+            let beyond = || format!("has {rows} rows, and a sparse one at {index}");
+            replaced.ok_or_else(beyond)?.copy_from_slice(row);
+        }
+        Ok(())
     }
 }
 

@@ -157,9 +157,18 @@ pub fn material_parts(
         None => field.to_owned(),
     };
     if let Some(info) = own.base_color_texture() {
+        let part = |map, channels: &'static [usize]| known(&info, map, channels, true);
+        // An unlit surface beside lit ones emits its colour.
+        let is_emitted = material.unlit() && !reader.all_unlit;
         // The alpha of materials that are not masked counts for nothing.
-        let channels = if is_masked(material) { RGBA } else { RGB };
-        parts.extend(known(&info, "base_map", channels, true));
+        match (is_emitted, is_masked(material)) {
+            (false, false) => parts.extend(part("base_map", RGB)),
+            (false, true) => parts.extend(part("base_map", RGBA)),
+            (true, is_masked) => {
+                parts.extend(part("emission_map", RGB));
+                parts.extend(is_masked.then(|| part("base_map", &[3])).flatten());
+            }
+        }
     }
     // An unlit material uses no other textures.
     if material.unlit() {

@@ -24,7 +24,11 @@ pub fn read_surface(
     let color = DVec3::new(red, green, blue);
     let layers = read_layers(reader, material)?;
     left_out(reader, material);
-    let means = if material.unlit() { Means::default() } else { texture_means(reader, material)? };
+    if layers.transmission > 0.0 && !material.unlit() {
+        let note = "glass shows its surroundings alone: other objects are not seen through it";
+        reader.notes.insert(note.to_owned());
+    }
+    let means = texture_means(reader, material)?;
     // Diffuse, specular and shininess are for permutations without glTF's material model. These
     // have no textures of metalness and roughness, so the means are multiplied in here.
     let metal = layers.metallic * means.metal;
@@ -33,10 +37,6 @@ pub fn read_surface(
     let strength = f64::from(material.emissive_strength().unwrap_or(1.0)).max(0.0);
     let emission = DVec3::from_array(material.emissive_factor().map(f64::from)) * strength;
     if material.unlit() {
-        if !reader.all_unlit && own.base_color_texture().is_some() {
-            let what = "ignored: textures of unlit materials, since other materials are lit";
-            reader.notes.insert(what.to_owned());
-        }
         let (color, material) = unlit_surface(reader.all_unlit, color);
         return Ok((color, material, means));
     }
@@ -120,6 +120,14 @@ fn texture_means(
     material: &gltf::Material<'_>,
 ) -> Result<Means, String> {
     let mut means = Means::default();
+    if material.unlit() {
+        // Beside lit surfaces it emits its colour; alone it has a texture of colours.
+        let emitted = material.pbr_metallic_roughness().base_color_texture();
+        if let Some(info) = emitted.filter(|_| !reader.all_unlit) {
+            means.emission = reader.texture_mean(&info.texture(), true)?;
+        }
+        return Ok(means);
+    }
     if let Some(info) = material.pbr_metallic_roughness().metallic_roughness_texture() {
         let mean = reader.texture_mean(&info.texture(), false)?;
         (means.rough, means.metal) = (mean.y, mean.z);

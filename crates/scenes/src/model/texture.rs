@@ -283,6 +283,17 @@ fn image_bytes<'b>(
     }
 }
 
+/// The format of an image that extensions allow, by its first bytes.
+fn unread_format(bytes: &[u8]) -> Option<&'static str> {
+    if bytes.starts_with(b"\xabKTX 20\xbb") {
+        return Some("KTX 2, as of KHR_texture_basisu");
+    }
+    if bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") {
+        return Some("WebP");
+    }
+    bytes.starts_with(b"DDS ").then_some("DDS")
+}
+
 /// An image of the document, linear, or why it cannot be decoded.
 ///
 /// # Errors
@@ -294,6 +305,10 @@ fn decode_image(
 ) -> Result<Result<TextureMap, String>, String> {
     let place = format!("images[{index}]");
     let bytes = image_bytes(reader, index, &place)?;
+    let bytes = bytes.as_ref();
+    if let Some(format) = unread_format(bytes) {
+        return Ok(Err(format!("it is {format}, which is not read; export it as PNG or JPEG")));
+    }
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(16 * MODEL_PIXELS);
     let mut file = image::ImageReader::new(Cursor::new(bytes))
