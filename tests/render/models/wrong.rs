@@ -79,6 +79,64 @@ const WRONG: &[Wrong] = &[
         "sparse",
     ),
     (
+        "sparse_row_beyond",
+        || {
+            changed(|document| {
+                document["accessors"][1]["sparse"] = json!({ "count": 1,
+                    "indices": { "bufferView": 1, "componentType": 5123, "byteOffset": 10 },
+                    "values": { "bufferView": 0 } });
+                document["accessors"][1]["count"] = json!(3);
+            })
+        },
+        "a sparse one at 3",
+    ),
+    (
+        "targets_without_an_end",
+        || {
+            changed(|document| {
+                document["accessors"][2]["count"] = json!(4_000_000_000_u32);
+                document["meshes"][0]["weights"] = json!([1.0]);
+                let primitive = &mut document["meshes"][0]["primitives"][0];
+                primitive["targets"] = json!([{ "NORMAL": 2 }]);
+                primitive["indices"] = json!(3);
+                let accessors = document["accessors"].as_array_mut();
+                let indices = json!({ "bufferView": 1, "componentType": 5123, "count": 6,
+                    "type": "SCALAR" });
+                accessors.into_iter().for_each(|all| all.push(indices.clone()));
+            })
+        },
+        "morph targets and joints move more than",
+    ),
+    (
+        "joints_without_matrices",
+        || {
+            changed(|document| {
+                document["skins"] = json!([{ "joints": [0, 0], "inverseBindMatrices": 3 }]);
+                document["nodes"][0]["skin"] = json!(0);
+                let accessors = document["accessors"].as_array_mut();
+                let one = json!({ "bufferView": 0, "componentType": 5126, "count": 1,
+                    "type": "MAT4" });
+                accessors.into_iter().for_each(|all| all.push(one.clone()));
+            })
+        },
+        "skins[0].inverseBindMatrices: 1 matrices for 2 joints",
+    ),
+    (
+        "needs_draco",
+        || {
+            changed(|document| {
+                document["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+                document["accessors"][0]["bufferView"] = json!(99);
+            })
+        },
+        "`KHR_draco_mesh_compression` is not read: its meshes are compressed",
+    ),
+    (
+        "needs_a_newer_version",
+        || changed(|document| document["asset"]["minVersion"] = json!("2.1")),
+        "asset.minVersion: it needs glTF 2.1",
+    ),
+    (
         "another_file",
         || changed(|document| document["buffers"][0]["uri"] = json!("/etc/passwd")),
         "in another file",

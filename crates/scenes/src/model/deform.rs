@@ -1,14 +1,20 @@
 //! Vertices that morph targets and skins move: as the model is at rest.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use crate::model::GltfReader;
 use crate::model::nodes::{PlacedMesh, PlacedNodes};
 use crate::shape::Vertex;
 use glam::{DMat3, DMat4, DVec3};
 use gltf::Semantic;
+use lamplight_files::limits::MODEL_CORNERS;
 
 /// Adds the targets of a primitive, each times its weight, as the node or else the mesh gives it.
+///
+/// # Errors
+/// Numbers that are not there, and too many vertices.
 pub fn morph(
-    reader: &GltfReader<'_>,
+    reader: &mut GltfReader<'_>,
     primitive: &gltf::Primitive<'_>,
     part: &PlacedMesh,
     vertices: &mut [Vertex],
@@ -19,6 +25,10 @@ pub fn morph(
         if weight == 0.0 {
             continue;
         }
+        let parts = [target.positions(), target.normals(), target.tangents()];
+        let rows = parts.iter().flatten().map(gltf::Accessor::count);
+        let rows = rows.fold(0, usize::saturating_add);
+        count_moved(reader, rows, place)?;
         let moves = |accessor: Option<gltf::Accessor<'_>>, name: &str| {
             let place = format!("{place}.targets[{index}].{name}");
             let rows = accessor.map(|accessor| reader.rows(&accessor, &place)).transpose()?;
@@ -50,47 +60,58 @@ pub struct Skinning {
     world_from_bound: Vec<DMat4>,
 }
 
-impl Skinning {
-    /// That of a mesh in its place; `None` if it has no skin. The place of the mesh itself then counts
-    /// for nothing (glTF 2.0, 3.7.3.2).
-    ///
-    /// # Errors
-    /// Matrices that are not there.
-    pub fn of(
-        reader: &mut GltfReader<'_>,
-        part: &PlacedMesh,
-        placed: &PlacedNodes,
-    ) -> Result<Option<Self>, String> {
-        let Some(index) = part.skin else { return Ok(None) };
-        let skin =
-            reader.document.skins().nth(index).ok_or("a node has a skin that is not there")?;
-        let place = format!("skins[{index}].inverseBindMatrices");
+/// Those of the skins that are drawn, by their numbers.
+pub type Skins = BTreeMap<usize, Skinning>;
+
+/// The skins of all meshes in their places. The place of such a mesh itself counts for nothing (glTF
+/// 2.0, 3.7.3.2). A skin whose joints are not in the scene is ignored, with a note.
+///
+/// # Errors
+/// Matrices that are not there.
+pub fn skins(reader: &mut GltfReader<'_>, placed: &PlacedNodes) -> Result<Skins, String> {
+    let used: BTreeSet<usize> = placed.parts.iter().filter_map(|part| part.skin).collect();
+    let mut skins = Skins::new();
+    for skin in reader.document.skins().filter(|skin| used.contains(&skin.index())) {
+        let place = format!("skins[{}]", skin.index());
+        let at = format!("{place}.inverseBindMatrices");
         let inverse = match skin.inverse_bind_matrices() {
-            Some(accessor) => reader.matrices(&accessor, &place)?,
+            Some(accessor) => reader.matrices(&accessor, &at)?,
             None => vec![DMat4::IDENTITY; skin.joints().count()],
         };
-        let worlds: Option<Vec<DMat4>> =
-            skin.joints().map(|joint| placed.worlds.get(&joint.index()).copied()).collect();
-        let Some(worlds) = worlds else {
-            let note = format!("skins[{index}] is ignored: its joints are not in the scene");
-            reader.notes.insert(note);
-            return Ok(None);
+        let worlds = skin.joints().map(|joint| placed.worlds.get(&joint.index()).copied());
+        let Some(worlds) = worlds.collect::<Option<Vec<DMat4>>>() else {
+            reader.notes.insert(format!("{place} is ignored: its joints are not in the scene"));
+            continue;
         };
         if inverse.len() < worlds.len() {
             let (has, joints) = (inverse.len(), worlds.len());
-            return Err(format!("{place}: {has} matrices for {joints} joints"));
+            return Err(format!("{at}: {has} matrices for {joints} joints"));
         }
-        let world_from_bound = worlds.iter().zip(&inverse).map(|(world, own)| *world * *own);
-        Ok(Some(Self { world_from_bound: world_from_bound.collect() }))
+        let world_from_bound =
+            worlds.iter().zip(&inverse).map(|(world, own)| *world * *own).collect();
+        skins.insert(skin.index(), Skinning { world_from_bound });
     }
+    Ok(skins)
+}
 
+/// Counts the vertices that something moves.
+fn count_moved(reader: &mut GltfReader<'_>, count: usize, place: &str) -> Result<(), String> {
+    const MOST: usize = 32 * MODEL_CORNERS;
+    reader.moved = reader.moved.saturating_add(count);
+    if reader.moved <= MOST {
+        return Ok(());
+    }
+    Err(format!("{place}: morph targets and joints move more than {MOST} vertices"))
+}
+
+impl Skinning {
     /// Moves the vertices of a primitive to the world. The result is whether that mirrors them.
     ///
     /// # Errors
-    /// Joints that are not there.
+    /// Joints that are not there, and too many vertices.
     pub fn apply(
         &self,
-        reader: &GltfReader<'_>,
+        reader: &mut GltfReader<'_>,
         primitive: &gltf::Primitive<'_>,
         vertices: &mut [Vertex],
         place: &str,
@@ -102,6 +123,7 @@ impl Skinning {
             else {
                 break;
             };
+            count_moved(reader, joints.count().max(weights.count()), place)?;
             let joints = reader.rows(&joints, &format!("{place}.attributes.JOINTS_{set}"))?;
             let weights = reader.rows(&weights, &format!("{place}.attributes.WEIGHTS_{set}"))?;
             for ((sum, joints), weights) in sums.iter_mut().zip(joints).zip(weights) {

@@ -6,6 +6,7 @@ use base64::Engine as _;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::buffer::Source;
+use lamplight_files::limits::MODEL_BYTES;
 
 /// Reads a file below the folder of the model, by its path with `/` between its parts.
 pub type Files<'f> = dyn Fn(&str) -> Result<Vec<u8>, String> + 'f;
@@ -15,23 +16,32 @@ pub type BufferBytes<'b> = Result<Cow<'b, [u8]>, String>;
 
 /// The bytes of each buffer of a document. `blob` is that of a binary file, which the first buffer has
 /// if it names nothing else.
+///
+/// # Errors
+/// Together they are too many.
 pub fn buffer_bytes<'b>(
     document: &gltf::Document,
     blob: &'b [u8],
     files: &Files<'_>,
-) -> Vec<BufferBytes<'b>> {
-    let bytes = |buffer: gltf::Buffer<'_>| {
+) -> Result<Vec<BufferBytes<'b>>, String> {
+    let (mut total, mut all) = (0, Vec::new());
+    for buffer in document.buffers() {
         let index = buffer.index();
-        match buffer.source() {
+        let bytes = match buffer.source() {
             Source::Bin if index == 0 => Ok(Cow::Borrowed(blob)),
             Source::Bin => Err(format!("buffer {index} has no bytes")),
             Source::Uri(uri) => {
                 let bytes = uri_bytes(uri, files);
                 bytes.map(Cow::Owned).map_err(|reason| format!("buffer {index} {reason}"))
             }
+        };
+        total += bytes.as_ref().map_or(0, |bytes| bytes.len() as u64);
+        if total > MODEL_BYTES {
+            return Err(format!("buffers[{index}]: all have more bytes than {MODEL_BYTES}"));
         }
-    };
-    document.buffers().map(bytes).collect()
+        all.push(bytes);
+    }
+    Ok(all)
 }
 
 /// The bytes that a URI stands for.

@@ -2,8 +2,8 @@
 
 use crate::model::GltfReader;
 use crate::model::channels::Coordinates;
-use crate::model::deform::{Skinning, morph};
-use crate::model::nodes::{PlacedMesh, PlacedNodes};
+use crate::model::deform::{Skinning, Skins, morph};
+use crate::model::nodes::PlacedMesh;
 use crate::model::surface::{Means, read_surface, tested_alpha};
 use crate::model::texture::Sheet;
 use crate::sets::Object;
@@ -15,14 +15,14 @@ use lamplight_files::limits::MODEL_CORNERS;
 /// The objects of a mesh in its place: one for each primitive of triangles.
 pub fn mesh_objects(
     reader: &mut GltfReader<'_>,
-    (part, placed): (&PlacedMesh, &PlacedNodes),
+    (part, skins): (&PlacedMesh, &Skins),
     sheet: &Sheet,
     corners: &mut usize,
 ) -> Result<Vec<(Object, Means)>, String> {
     let document = reader.document;
     let mesh = document.meshes().nth(part.mesh).ok_or("a node has a mesh that is not there")?;
     let mut objects = Vec::new();
-    let skinning = Skinning::of(reader, part, placed)?;
+    let skinning = part.skin.and_then(|skin| skins.get(&skin));
     for primitive in mesh.primitives() {
         let place = format!("meshes[{}].primitives[{}]", part.mesh, primitive.index());
         let Some(indices) = triangle_indices(reader, &primitive, &place)? else { continue };
@@ -37,8 +37,7 @@ pub fn mesh_objects(
             let note = format!("{place}: no `TEXCOORD_{}`, which its textures name", own.set);
             reader.notes.insert(note);
         }
-        let shape =
-            mesh_shape(reader, &primitive, (indices, own), (part, skinning.as_ref()), &place)?;
+        let shape = mesh_shape(reader, &primitive, (indices, own), (part, skinning), &place)?;
         let shape = sheet.placed(reader, shape, &primitive.material())?;
         let shape = match skinning {
             Some(_) => shape,
@@ -136,7 +135,7 @@ pub fn mesh_coordinates(
 /// The vertices and triangles of a primitive. Without normals each triangle has that of its face, and
 /// tangents are then ignored (glTF 2.0, 3.7.2.1).
 fn mesh_shape(
-    reader: &GltfReader<'_>,
+    reader: &mut GltfReader<'_>,
     primitive: &gltf::Primitive<'_>,
     (indices, own): (Vec<u32>, Coordinates),
     (part, skinning): (&PlacedMesh, Option<&Skinning>),

@@ -85,6 +85,8 @@ struct GltfReader<'b> {
     notes: BTreeSet<String>,
     /// Means of images, by number and whether they are colours.
     means: BTreeMap<(usize, bool), DVec3>,
+    /// How many vertices morph targets and joints have moved, counted for each of these.
+    moved: usize,
     /// Whether no material that is drawn is lit.
     all_unlit: bool,
 }
@@ -114,14 +116,17 @@ pub fn read_model_beside(bytes: &[u8], view: View, files: &Files<'_>) -> Result<
     let read = || -> Result<Model, String> {
         let mut notes = BTreeSet::new();
         let document = document::read_document(json, &mut notes)?;
-        let buffers = buffer_bytes(&document, blob, files);
-        let total: usize = buffers.iter().flatten().map(|bytes| bytes.len()).sum();
-        if total as u64 > MODEL_BYTES {
-            return Err(format!("{total} bytes of buffers are more than {MODEL_BYTES}"));
-        }
+        let buffers = buffer_bytes(&document, blob, files)?;
         let (document, buffers) = (&document, &buffers[..]);
-        let means = BTreeMap::new();
-        let mut reader = GltfReader { document, buffers, files, notes, means, all_unlit: false };
+        let mut reader = GltfReader {
+            document,
+            buffers,
+            files,
+            notes,
+            means: BTreeMap::new(),
+            moved: 0,
+            all_unlit: false,
+        };
         model_scene(&mut reader, view)
     };
     catch_panics(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
@@ -183,8 +188,9 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
     let sheet = texture::texture_sheet(reader, &placed)?;
     let mut found = Vec::new();
     let mut corners = 0;
+    let skins = deform::skins(reader, &placed)?;
     for part in &placed.parts {
-        found.extend(mesh::mesh_objects(reader, (part, &placed), &sheet, &mut corners)?);
+        found.extend(mesh::mesh_objects(reader, (part, &skins), &sheet, &mut corners)?);
     }
     let (objects, means): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     if objects.is_empty() {

@@ -153,7 +153,9 @@ fn take_node(
 
 /// Where EXT_mesh_gpu_instancing repeats a node's mesh, in the space of the node: once, without it.
 fn mesh_instances(reader: &GltfReader<'_>, node: &gltf::Node<'_>) -> Result<Vec<DMat4>, String> {
-    let Some(value) = node.extension_value(INSTANCING) else { return Ok(vec![DMat4::IDENTITY]) };
+    // A skin has its place from its joints.
+    let value = node.extension_value(INSTANCING).filter(|_| node.skin().is_none());
+    let Some(value) = value else { return Ok(vec![DMat4::IDENTITY]) };
     let place = format!("nodes[{}].extensions.{INSTANCING}.attributes", node.index());
     let rows = |name: &str| -> Result<Option<Vec<[f64; 4]>>, String> {
         let Some(number) = value.get("attributes").and_then(|all| all.get(name)) else {
