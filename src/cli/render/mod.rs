@@ -154,9 +154,11 @@ fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {
 
 /// What is drawn: a model, or a scene of ours.
 fn make_plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
-    let Some(own) = model::read_model(arguments)? else {
+    let Some(mut own) = model::read_model(arguments)? else {
         return permutation_plan(programs, arguments);
     };
+    let [width, height] = arguments.size.unwrap_or([1, 1]).map(f64::from);
+    own.fit(width / height);
     let plan = model::model_plan(programs, arguments, &own)?;
     let scene = model::model_scene(own, &plan)?;
     Ok(Plan { model: Some(Arc::new(scene)), ..plan })

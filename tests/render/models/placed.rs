@@ -6,10 +6,11 @@ use serde_json::{Value, json};
 use super::{BEFORE, add_attribute, demand, drawn, glb, is_near, pixel, square};
 
 pub fn tests() -> impl Iterator<Item = Trial> {
-    let cases: [(_, fn() -> _); 3] = [
+    let cases: [(_, fn() -> _); 4] = [
         ("instances", instances),
         ("hidden", hidden),
         ("camera_by_its_number", camera_by_its_number),
+        ("camera_that_is_wide", camera_that_is_wide),
     ];
     cases.into_iter().map(|(name, run)| Trial::test(format!("render/model/placed/{name}"), run))
 }
@@ -83,4 +84,23 @@ fn camera_by_its_number() -> Result<(), Failed> {
     demand(told.contains("no perspective camera 0 in its scene, only 1"), || {
         format!("found {told}")
     })
+}
+
+/// glTF 2.0, 3.10.2: a picture of another form shows all that the camera does. The camera sees two units to
+/// the sides and one up and down, so that a square picture shows two everywhere: the square, whose
+/// half width is one, is its middle half.
+fn camera_that_is_wide() -> Result<(), Failed> {
+    let (mut document, buffer) = unlit();
+    document["cameras"] = json!([{ "type": "perspective", "perspective":
+        { "yfov": 2.0 * 0.5_f64.atan(), "aspectRatio": 2.0, "znear": 0.1 } }]);
+    document["nodes"] = json!([{ "mesh": 0 }, { "camera": 0, "translation": [0.0, 0.0, 2.0] }]);
+    document["scenes"] = json!([{ "nodes": [0, 1] }]);
+    let (picture, _) = drawn(&glb(&document, &buffer), &[])?;
+    for (x, y, is_there) in
+        [(0.22, 0.5, false), (0.28, 0.5, true), (0.5, 0.22, false), (0.5, 0.28, true)]
+    {
+        let found = pixel(&picture, x, y);
+        demand(is_near(found, [255; 3], 0) == is_there, || format!("({x}, {y}): {found:?}"))?;
+    }
+    Ok(())
 }

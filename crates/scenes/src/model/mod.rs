@@ -33,6 +33,8 @@ use lamplight_validate::catch_panics;
 #[derive(Debug)]
 pub struct Model {
     pub scene: Scene,
+    /// Width over height of what its camera shows, if the document says so.
+    pub aspect: Option<f64>,
     /// What was left out, each once.
     pub notes: BTreeSet<String>,
     /// Values of the axes of `forward` that show it, such as `specular=ggx`.
@@ -47,6 +49,16 @@ pub struct Model {
 }
 
 impl Model {
+    /// Widens the view for a picture of another form than the camera's, so that it shows all that
+    /// the camera does (glTF 2.0, 3.10.2). `shape` is its width over its height.
+    pub fn fit(&mut self, shape: f64) {
+        let eye = &mut self.scene.eye;
+        if let Some(aspect) = self.aspect.filter(|aspect| *aspect > shape) {
+            let half = (0.5 * eye.fov_y).tan() * aspect / shape;
+            eye.fov_y = (2.0 * half.atan()).min(3.0);
+        }
+    }
+
     /// The scene for a permutation. The means of textures that the permutation does not have are
     /// multiplied into the factors of the materials. The second value is a note that lists such
     /// textures, if there are any.
@@ -197,7 +209,8 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
         return Err(no_triangles(reader.document));
     }
     let bounds = nodes::bounding_ball(&objects);
-    let eye = model_eye(&placed, &bounds, view)?;
+    let camera = model_camera(&placed, view)?;
+    let eye = model_eye(camera, &bounds, view);
     if is_too_far(&bounds, &eye) {
         reader.notes.insert(format!(
             "it reaches further than {FARTHEST:e}, or is seen from further away: numbers of 32 bits \
@@ -225,8 +238,9 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
     let mut scene = Scene::of_model(objects, eye, lamps);
     scene.lamp_numbers = numbers;
     scene.own_maps = sheet.maps.map(Arc::new);
+    let aspect = camera.and_then(|camera| camera.aspect).filter(|aspect| *aspect > 0.0);
     let notes = std::mem::take(&mut reader.notes);
-    Ok(Model { scene, notes, axes, layers, textures: sheet.names, means })
+    Ok(Model { scene, aspect, notes, axes, layers, textures: sheet.names, means })
 }
 
 /// Why a model without triangles is not drawn.
@@ -300,7 +314,29 @@ fn model_axes(
     chosen.split(',').chain(masked).map(str::to_owned).collect()
 }
 
-fn model_eye(placed: &nodes::PlacedNodes, bounds: &nodes::Ball, view: View) -> Result<Eye, String> {
+/// The camera of the document for a view. `None` if the view has another place.
+fn model_camera(
+    placed: &nodes::PlacedNodes,
+    view: View,
+) -> Result<Option<&nodes::GltfCamera>, String> {
+    let index = match view {
+        View::At(..) => return Ok(None),
+        View::Own => return Ok(placed.cameras.first()),
+        View::Camera(index) => index,
+    };
+    let camera = placed.cameras.iter().find(|camera| camera.index == index);
+    let known = || placed.cameras.iter().map(|camera| camera.index.to_string());
+    let missing = || match known().next() {
+        None => "it has no perspective camera in its scene".to_owned(),
+        Some(_) => format!(
+            "it has no perspective camera {index} in its scene, only {}",
+            known().collect::<Vec<_>>().join(", ")
+        ),
+    };
+    camera.ok_or_else(missing).map(Some)
+}
+
+fn model_eye(camera: Option<&nodes::GltfCamera>, bounds: &nodes::Ball, view: View) -> Eye {
     let (near, far) = (0.005 * bounds.radius, 40.0 * bounds.radius);
     let looking = |position: DVec3, target: DVec3, fov_y: f64| Eye {
         position,
@@ -309,25 +345,13 @@ fn model_eye(placed: &nodes::PlacedNodes, bounds: &nodes::Ball, view: View) -> R
         near,
         far: far.max(2.0 * position.distance(bounds.middle)),
     };
-    match view {
-        View::At(position, target) => Ok(looking(position, target, 0.7)),
-        View::Own if placed.cameras.is_empty() => {
+    match (camera, view) {
+        (Some(camera), _) => camera.eye(bounds),
+        (None, View::At(position, target)) => looking(position, target, 0.7),
+        (None, View::Own | View::Camera(_)) => {
             let towards = DVec3::new(0.35, 0.28, 1.0).normalize();
             let position = bounds.middle + towards * bounds.radius / (0.5_f64 * 0.7).sin() * 1.02;
-            Ok(looking(position, bounds.middle, 0.7))
-        }
-        View::Own => Ok(placed.cameras[0].eye(bounds)),
-        View::Camera(index) => {
-            let camera = placed.cameras.iter().find(|camera| camera.index == index);
-            let known = || placed.cameras.iter().map(|camera| camera.index.to_string());
-            let camera = camera.ok_or_else(|| match known().next() {
-                None => "it has no perspective camera in its scene".to_owned(),
-                Some(_) => format!(
-                    "it has no perspective camera {index} in its scene, only {}",
-                    known().collect::<Vec<_>>().join(", ")
-                ),
-            })?;
-            Ok(camera.eye(bounds))
+            looking(position, bounds.middle, 0.7)
         }
     }
 }

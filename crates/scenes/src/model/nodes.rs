@@ -27,6 +27,8 @@ pub struct GltfCamera {
     pub index: usize,
     world_from_camera: DMat4,
     fov_y: f64,
+    /// Width over height of what it shows, if the document says so.
+    pub aspect: Option<f64>,
     planes: (f64, Option<f64>),
 }
 
@@ -140,6 +142,7 @@ fn take_node(
             index,
             world_from_camera: world,
             fov_y: f64::from(view.yfov()),
+            aspect: view.aspect_ratio().map(f64::from),
             planes: (f64::from(view.znear()), view.zfar().map(f64::from)),
         }),
         Some((index, Projection::Orthographic(_))) => {
