@@ -230,6 +230,8 @@ limits! {
         "the stack, against cycles of nodes", "more than ... nodes, or nesting deeper than ...";
     MODEL_CORNERS: usize = 1 << 20, Count, "vertices of all triangles of a model", "memory",
         "more than ... vertices of triangles";
+    MODEL_MOVED: usize = 1 << 25, Count, "vertices that morph targets and joints move, for each of these", "time",
+        "move more than ... vertices";
     MODEL_TEXTURES: usize = 64, Count, "sets of textures of a model", "time", "more than ... sets of textures";
     MODEL_PIXELS: u64 = 1 << 24, Count, "pixels of one of its images", "memory",
         "... pixels are more than ...";

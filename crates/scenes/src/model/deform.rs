@@ -7,7 +7,7 @@ use crate::model::nodes::{PlacedMesh, PlacedNodes};
 use crate::shape::Vertex;
 use glam::{DMat3, DMat4, DVec3};
 use gltf::Semantic;
-use lamplight_files::limits::MODEL_CORNERS;
+use lamplight_files::limits::MODEL_MOVED;
 
 /// Adds the targets of a primitive, each times its weight, as the node or else the mesh gives it.
 ///
@@ -96,12 +96,11 @@ pub fn skins(reader: &mut GltfReader<'_>, placed: &PlacedNodes) -> Result<Skins,
 
 /// Counts the vertices that something moves.
 fn count_moved(reader: &mut GltfReader<'_>, count: usize, place: &str) -> Result<(), String> {
-    const MOST: usize = 32 * MODEL_CORNERS;
     reader.moved = reader.moved.saturating_add(count);
-    if reader.moved <= MOST {
+    if reader.moved <= MODEL_MOVED {
         return Ok(());
     }
-    Err(format!("{place}: morph targets and joints move more than {MOST} vertices"))
+    Err(format!("{place}: morph targets and joints move more than {MODEL_MOVED} vertices"))
 }
 
 impl Skinning {
