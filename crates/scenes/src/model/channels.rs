@@ -147,29 +147,11 @@ pub fn material_parts(
     material: &gltf::Material<'_>,
 ) -> Result<Vec<ImageChannels>, String> {
     let mut parts = Vec::new();
-    let own = material.pbr_metallic_roughness();
-    let known = |info: &gltf::texture::Info<'_>, map, channels, is_color| {
-        let part = ImageChannels::new(map, &info.texture(), channels, is_color);
-        part.map(|part| part.at(Coordinates::of_texture(info)))
-    };
     let place = |field: &str| match material.index() {
         Some(index) => format!("materials[{index}].{field}"),
         None => field.to_owned(),
     };
-    if let Some(info) = own.base_color_texture() {
-        let part = |map, channels: &'static [usize]| known(&info, map, channels, true);
-        // An unlit surface beside lit ones emits its colour.
-        let is_emitted = material.unlit() && !reader.all_unlit;
-        // The alpha of materials that are not masked counts for nothing.
-        match (is_emitted, is_masked(material)) {
-            (false, false) => parts.extend(part("base_map", RGB)),
-            (false, true) => parts.extend(part("base_map", RGBA)),
-            (true, is_masked) => {
-                parts.extend(part("emission_map", RGB));
-                parts.extend(is_masked.then(|| part("base_map", &[3])).flatten());
-            }
-        }
-    }
+    parts.extend(color_parts(reader, material));
     // An unlit material uses no other textures.
     if material.unlit() {
         return Ok(parts);
@@ -181,7 +163,7 @@ pub fn material_parts(
         parts.extend(part.map(|part| part.at(at).with_strength(info.scale())));
     }
     for (info, map, channels, is_color) in factor_textures(material) {
-        parts.extend(known(&info, map, channels, is_color));
+        parts.extend(known_part(&info, map, channels, is_color));
     }
     if let Some(info) = material.occlusion_texture() {
         let own = info.extension_value(TRANSFORM);
@@ -193,6 +175,35 @@ pub fn material_parts(
         parts.extend(extension_part(reader, material, field)?);
     }
     Ok(parts)
+}
+
+/// The part of a texture that the parser knows, if it has an image.
+fn known_part(
+    info: &gltf::texture::Info<'_>,
+    map: &'static str,
+    channels: &'static [usize],
+    is_color: bool,
+) -> Option<ImageChannels> {
+    let part = ImageChannels::new(map, &info.texture(), channels, is_color)?;
+    Some(part.at(Coordinates::of_texture(info)))
+}
+
+/// The parts of the texture of a material's base colour.
+fn color_parts(reader: &GltfReader<'_>, material: &gltf::Material<'_>) -> Vec<ImageChannels> {
+    let info = material.pbr_metallic_roughness().base_color_texture();
+    let part = |map, channels: &'static [usize]| {
+        info.as_ref().and_then(|info| known_part(info, map, channels, true))
+    };
+    // An unlit surface beside lit ones emits its colour.
+    let is_emitted = material.unlit() && !reader.all_unlit;
+    // The alpha of materials that are not masked counts for nothing.
+    let parts = match (is_emitted, is_masked(material)) {
+        (false, false) => [part("base_map", RGB), None],
+        (false, true) => [part("base_map", RGBA), None],
+        (true, false) => [part("emission_map", RGB), None],
+        (true, true) => [part("emission_map", RGB), part("base_map", &[3])],
+    };
+    parts.into_iter().flatten().collect()
 }
 
 /// A texture of a factor, the name of the binding, the channels, and whether it is a colour.
