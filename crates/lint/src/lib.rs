@@ -4,6 +4,7 @@
 mod case;
 mod flags;
 mod settings;
+mod stages;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -169,18 +170,27 @@ fn one_by_one(graph: &Graph, settings: &Settings) -> Diagnostics {
 /// Options that keep everything that a module declares. For a GLSL file with a stage in its name
 /// they also keep what it includes.
 pub fn lint_options(graph: &Graph, path: &str) -> Options {
-    let stem = path.strip_suffix(".glsl").unwrap_or(path);
-    let has_stage = [".vert", ".frag", ".comp"].iter().any(|ending| stem.ends_with(ending));
     let keep = match graph {
-        Graph::Glsl(_) if has_stage => Keep::All,
+        Graph::Glsl(_) if has_stage(path) => Keep::All,
         _ => Keep::Root,
     };
     Options { keep, ..Options::default() }
 }
 
+/// Whether the name of a GLSL file says for which stage it is.
+fn has_stage(path: &str) -> bool {
+    let stem = path.strip_suffix(".glsl").unwrap_or(path);
+    [".vert", ".frag", ".comp"].iter().any(|ending| stem.ends_with(ending))
+}
+
 /// The warnings from composing a text, then what naga finds in it.
 pub fn lint_text(graph: &Graph, composed: &Composed) -> Diagnostics {
-    let warnings = graph.own(composed.warnings.clone());
+    let mut warnings = graph.own(composed.warnings.clone());
+    if let Graph::Glsl(graph) = graph
+        && has_stage(&graph.root)
+    {
+        warnings.extend(stages::mistakes_of_stage(composed));
+    }
     match validate::validate_every(composed) {
         Ok(validated) => {
             let more = graph.own(validate::lint(composed, &validated, false));

@@ -9,7 +9,8 @@
 )]
 
 mod large;
+mod stages;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[large::tests])
+    lamplight_testing::run_tests(&[large::tests, stages::tests])
 }

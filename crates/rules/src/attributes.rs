@@ -2,7 +2,7 @@
 
 use super::constants::check_untyped;
 use super::names::{Module, stage_of};
-use super::syntax::{Attribute, Declaration, DeclarationKind, ExprKind, Function, Tree};
+use super::syntax::{Attribute, Declaration, DeclarationKind, ExprKind, Function, Severity, Tree};
 use super::{Problem, Rule};
 
 pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
@@ -18,6 +18,7 @@ pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
         problems.extend(misplaced_of_function(function));
         problems.extend(mixed_sizes(tree, function));
         problems.extend(compute_input(module, function));
+        problems.extend(high_locations(module, function));
     }
     problems
 }
@@ -61,6 +62,47 @@ fn mixed_sizes(tree: &Tree<'_>, function: &Function<'_>) -> Option<Problem> {
     };
     let message = "the sizes of a workgroup must have one type".to_owned();
     (ends_with('i') && ends_with('u')).then(|| Problem::new(Rule::Attribute, sizes.place, message))
+}
+
+/// How many locations every device has for the inputs and the outputs of a stage, by the limits that
+/// WebGPU gives without a request: `maxVertexAttributes`, `maxInterStageShaderVariables` and
+/// `maxColorAttachments`.
+fn locations_of(stage: &str) -> (u64, u64) {
+    match stage {
+        "fragment" => (16, 8),
+        _ => (16, 16),
+    }
+}
+
+/// Locations that a device has only where more were asked for.
+fn high_locations(module: &Module<'_, '_>, function: &Function<'_>) -> Vec<Problem> {
+    let Some(stage @ ("vertex" | "fragment")) = stage_of(function) else { return Vec::new() };
+    let (inputs, outputs) = locations_of(stage);
+    let parameters = function.parameters.iter();
+    let read = parameters.map(|one| (inputs, &one.attributes[..], Some(one.of_type)));
+    let written = (outputs, &function.result_attributes[..], function.result);
+    let mut problems = Vec::new();
+    for (most, attributes, of_type) in read.chain([written]) {
+        let structure = of_type.and_then(|of_type| module.structure(of_type));
+        let members = structure.map_or(&[][..], |at| &module.tree.structs[at].members);
+        let within = members.iter().flat_map(|member| &member.attributes);
+        for attribute in attributes.iter().chain(within) {
+            problems.extend(high_location(module.tree, attribute, most));
+        }
+    }
+    problems
+}
+
+fn high_location(tree: &Tree<'_>, attribute: &Attribute<'_>, most: u64) -> Option<Problem> {
+    let ("location", [argument]) = (attribute.name, &attribute.arguments[..]) else { return None };
+    let ExprKind::Literal(text) = tree.kind(tree.inner(*argument)) else { return None };
+    let number: u64 = text.trim_end_matches(['i', 'u']).parse().ok().filter(|at| *at >= most)?;
+    let message = format!(
+        "a device has the locations 0 to {} here, and {number} only where more were asked for",
+        most - 1
+    );
+    let severity = Severity::Warning;
+    Some(Problem { severity, ..Problem::new(Rule::Attribute, attribute.place, message) })
 }
 
 /// An input with a location of a compute shader.

@@ -2,6 +2,7 @@
 //! specification), behaviours of statements, and smaller ones. The analysis runs on a text of its
 //! own tree: naga's module no longer has all that the rules speak of.
 
+mod atomics;
 mod attributes;
 mod behaviour;
 mod constants;
@@ -128,6 +129,7 @@ fn check_with<'s>(
     problems.extend(statements::check(&tree));
     problems.extend(attributes::check(&tree, &module));
     problems.extend(memory::check(&tree, &module));
+    problems.extend(atomics::check(&tree, &module));
     problems.extend(constants::check(&tree, &module));
     let (found, summaries) = uniformity::check(&tree, &module, known);
     problems.extend(found);

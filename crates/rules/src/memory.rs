@@ -68,7 +68,7 @@ fn check_pointer(
 }
 
 /// Whether a type has atomics within.
-fn has_atomic(module: &Module<'_, '_>, id: ExprId, depth: usize) -> bool {
+pub fn has_atomic(module: &Module<'_, '_>, id: ExprId, depth: usize) -> bool {
     // Types cannot contain themselves; naga says so where they do.
     if depth > 64 {
         return false;

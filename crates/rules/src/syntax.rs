@@ -31,7 +31,10 @@ pub enum ExprKind<'t> {
         template: Vec<ExprId>,
         arguments: Vec<ExprId>,
     },
-    Member(ExprId),
+    Member {
+        base: ExprId,
+        name: &'t str,
+    },
     Index {
         base: ExprId,
         index: ExprId,

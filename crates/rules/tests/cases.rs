@@ -106,6 +106,27 @@ const TEXTS: &[(&str, Option<Rule>)] = &[
     ("@workgroup_size(1) fn f() { }", Some(Rule::Attribute)),
     ("@compute @workgroup_size(1i, 1u) fn f() { }", Some(Rule::Attribute)),
     ("@id(1) const a = 1;", Some(Rule::Attribute)),
+    ("var<workgroup> a: atomic<u32>;\nfn f() { a = 1u; }", Some(Rule::Memory)),
+    ("var<workgroup> a: atomic<u32>;\nfn f() { atomicStore(&(a), 1u); }", None),
+    (
+        "struct S { a: atomic<u32> }\nvar<workgroup> s: S;\nfn f() { let b = (s); }",
+        Some(Rule::Memory),
+    ),
+    ("struct S { a: atomic<u32> }\nvar<workgroup> s: S;\nfn f() { s.a = 1u; }", Some(Rule::Memory)),
+    (
+        "struct S { a: atomic<u32>, b: u32 }\nvar<workgroup> s: array<S, 2>;\n\
+         fn f() { s[1].b = 1u; let c = &s[0].a; atomicStore(c, s[0].b); }",
+        None,
+    ),
+    (
+        "struct S { a: atomic<u32> }\nfn f(s: ptr<workgroup, array<S, 2>>) { (*s)[0].a = 1u; }",
+        Some(Rule::Memory),
+    ),
+    (
+        "struct S { a: atomic<u32> }\n\
+         fn f(s: ptr<workgroup, S>) -> u32 { return atomicLoad(&(*s).a) + atomicLoad(&s.a); }",
+        None,
+    ),
     ("var<workgroup> a: i32;\n@fragment fn f() { _ = a; }", Some(Rule::Memory)),
     (
         "@group(0) @binding(4) var<storage, read_write> a: i32;\n\
@@ -143,6 +164,7 @@ pub fn tests() -> Vec<Trial> {
             )
         }),
         Trial::test("rules::texts", texts),
+        Trial::test("rules::high_locations", high_locations),
         Trial::test("rules::deep_texts", deep_texts),
         Trial::test("rules::large_functions", large_functions),
         Trial::test("rules::damaged_texts", damaged_texts),
@@ -165,6 +187,28 @@ fn texts() -> Result<(), Failed> {
     for (text, expected) in TEXTS {
         let found = errors(text).first().map(|problem| problem.rule);
         if found != *expected {
+            return Err(format!("`{text}` gives {found:?}").into());
+        }
+    }
+    Ok(())
+}
+
+/// Locations that WebGPU gives on request only, each with whether it is warned of.
+const LOCATIONS: &[(&str, bool)] = &[
+    ("@fragment fn f(@location(15) a: f32) -> @location(7) vec4f { return vec4f(a); }", false),
+    ("@fragment fn f(@location(16) a: f32) -> @location(7) vec4f { return vec4f(a); }", true),
+    ("@fragment fn f() -> @location(8) vec4f { return vec4f(); }", true),
+    ("struct S { @location(40u) a: f32 }\n@fragment fn f(s: S) { _ = s.a; }", true),
+    ("@vertex fn f(@location(8) a: vec4f) -> @builtin(position) vec4f { return a; }", false),
+];
+
+fn high_locations() -> Result<(), Failed> {
+    for (text, is_warned) in LOCATIONS {
+        let found = lamplight_rules::check(text);
+        let is_warning = |one: &lamplight_rules::Problem| {
+            one.rule == Rule::Attribute && one.severity == lamplight_rules::Severity::Warning
+        };
+        if found.iter().any(is_warning) != *is_warned || found.len() != usize::from(*is_warned) {
             return Err(format!("`{text}` gives {found:?}").into());
         }
     }

@@ -160,8 +160,8 @@ impl<'t> Parser<'t> {
                 self.expect("]")?;
                 id = self.add(ExprKind::Index { base: id, index }, start)?;
             } else if self.take(".") {
-                self.word()?;
-                id = self.add(ExprKind::Member(id), start)?;
+                let name = self.word()?;
+                id = self.add(ExprKind::Member { base: id, name }, start)?;
             } else {
                 return Ok(id);
             }

@@ -125,7 +125,7 @@ impl<'t> Parser<'t> {
             ExprKind::Call { callee: _, template, arguments } => {
                 template.iter().chain(arguments).map(height).max().unwrap_or(0)
             }
-            ExprKind::Member(one)
+            ExprKind::Member { base: one, name: _ }
             | ExprKind::Unary { operator: _, operand: one }
             | ExprKind::AddressOf(one)
             | ExprKind::Indirection(one)

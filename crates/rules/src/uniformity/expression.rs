@@ -54,7 +54,7 @@ impl<'t> Walk<'_, 't> {
             ExprKind::Call { callee, template: _, arguments } => {
                 Found::Value(self.call(flow, id, callee, arguments))
             }
-            ExprKind::Member(base) => match self.found(flow, *base) {
+            ExprKind::Member { base, name: _ } => match self.found(flow, *base) {
                 Found::Memory(after, view) => Found::Memory(after, part(view)),
                 Found::Value(value) => Found::Value(value),
             },
