@@ -41,7 +41,10 @@ async function show(uri = here()) {
 
 exports.activate = async (context) => {
   const command = vscode.workspace.getConfiguration('lamplight').get('command');
-  const documentSelector = languages.map((language) => ({ scheme: 'file', language }));
+  const documentSelector = [
+    ...languages.map((language) => ({ scheme: 'file', language })),
+    { scheme: 'file', pattern: '**/{wesl,lamplight}.toml' },
+  ];
   client = new LanguageClient('lamplight', 'Lamplight', { command, args: ['lsp'] }, {
     documentSelector,
     middleware: {

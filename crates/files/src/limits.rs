@@ -205,6 +205,9 @@ limits! {
     EDITOR_FILES: usize = 256, Count,
         "modules of a package whose diagnostics editors get while they are closed", "time",
         "no error: the language server checks only open files then, and `lint` checks all";
+    WORKSPACE_FOLDERS: usize = 20_000, Count,
+        "folders that the language server searches for packages that use a name", "time",
+        "nothing that other packages may name is renamed";
     EDIT_STEPS: u64 = 1 << 29, Count,
         "bytes of a document that the edits of one message read or move", "time",
         "the document is closed, and the editor shows a message";

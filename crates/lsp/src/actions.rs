@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::package::PackageModules;
 use super::place::{self, Lines};
 use super::{LanguageServer, complete, format, navigate};
-use lamplight_compose::project::MANIFEST;
+use lamplight_compose::project::{MANIFEST, WESL_MANIFEST};
 
 /// The most imports that are offered for one name.
 const OFFERED: usize = 8;
@@ -137,7 +137,7 @@ fn import_part(text: &str, word: Range<usize>) -> Option<Range<usize>> {
 /// The file that declares features, and the edit that adds one.
 fn feature_declaration(root: &Path, name: &str) -> Option<(String, Value)> {
     let folders = root.ancestors().take(2);
-    let names = [MANIFEST, "wesl.toml"];
+    let names = [MANIFEST, WESL_MANIFEST];
     let places = folders.flat_map(|folder| names.iter().map(move |name| folder.join(name)));
     let (file, text) =
         places.into_iter().find_map(|file| Some((file.clone(), read_text(&file)?)))?;

@@ -24,6 +24,9 @@ pub fn server_capabilities() -> Value {
                 "legend": { "tokenTypes": ["comment"], "tokenModifiers": [] },
                 "full": true,
             },
+            "workspace": {
+                "workspaceFolders": { "supported": true, "changeNotifications": true },
+            },
             "executeCommandProvider": { "commands": choose::COMMANDS },
         },
         "serverInfo": { "name": "lamplight", "version": env!("CARGO_PKG_VERSION") },

@@ -23,6 +23,7 @@ mod place;
 mod publish;
 mod report;
 pub mod wire;
+mod workspace;
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
@@ -42,6 +43,7 @@ use lamplight_files::limits::{EDIT_STEPS, Steps};
 use look::ChosenValues;
 use package::{OpenTexts, OpenedPackage, PackageModules};
 use wire::{NO_METHOD, answer_message, error_message, notification_message};
+use workspace::Workspace;
 
 /// Where a file of the embedded library lies on the disk, for editors to show.
 pub type LibraryPaths = Box<dyn Fn(&str) -> Option<PathBuf>>;
@@ -58,15 +60,16 @@ struct Document {
 /// The state of one session.
 pub struct LanguageServer {
     documents: BTreeMap<PathBuf, Document>,
+    workspace: Workspace,
     /// The permutation that the editor chose, by root folder of a package.
     choices: BTreeMap<PathBuf, ChosenValues>,
     /// By root folder of a package: what was parsed, which a keystroke in one file does not change.
     kept: RefCell<BTreeMap<PathBuf, KeptModules>>,
     file_cache: Arc<file_cache::FileCache>,
-    /// The modules of the package that was asked about last, kept until a document changes.
-    modules: Option<(PathBuf, Arc<PackageModules>)>,
+    /// By root folder of a package: its modules, kept until a document changes.
+    modules: BTreeMap<PathBuf, Arc<PackageModules>>,
     /// The same for the GLSL files of a package.
-    whole: Option<(PathBuf, Arc<glsl::Whole>)>,
+    whole: BTreeMap<PathBuf, Arc<glsl::Whole>>,
     /// Documents to analyse, the one that was edited last first.
     changed: VecDeque<PathBuf>,
     /// Modules on the disk to analyse when no document waits.
@@ -107,11 +110,12 @@ impl LanguageServer {
     pub fn new(library: LibraryPaths, files: Embedded) -> Self {
         Self {
             documents: BTreeMap::new(),
+            workspace: Workspace::default(),
             choices: BTreeMap::new(),
             kept: RefCell::default(),
             file_cache: Arc::default(),
-            modules: None,
-            whole: None,
+            modules: BTreeMap::new(),
+            whole: BTreeMap::new(),
             changed: VecDeque::new(),
             closed: VecDeque::new(),
             findings: publish::Findings::default(),
@@ -131,7 +135,7 @@ impl LanguageServer {
         match (method, message.get("id")) {
             (Some(method), Some(id)) => vec![self.request(method, id, parameters)],
             (Some(method), None) => self.notified(method, parameters),
-            // An answer to a request of the server, which sends no requests.
+            // An answer to a request of the server, which needs none.
             (None, _) if message.get("result").or(message.get("error")).is_some() => Vec::new(),
             (None, id) => {
                 vec![error_message(
@@ -145,7 +149,10 @@ impl LanguageServer {
 
     fn request(&mut self, method: &str, id: &Value, parameters: &Value) -> Value {
         match method {
-            "initialize" => return answer_message(id, capabilities::server_capabilities()),
+            "initialize" => {
+                self.workspace = Workspace::of_editor(parameters);
+                return answer_message(id, capabilities::server_capabilities());
+            }
             "shutdown" => {
                 self.is_shut_down = true;
                 return answer_message(id, Value::Null);
@@ -155,6 +162,12 @@ impl LanguageServer {
         let Some((_, handler)) = REQUESTS.iter().find(|(known, _)| *known == method) else {
             return error_message(id, NO_METHOD, &format!("there is no request `{method}`"));
         };
+        // Manifests are open for their diagnostics alone.
+        if method.starts_with("textDocument/")
+            && self.document(parameters).is_ok_and(|found| !look::is_module(&found.path))
+        {
+            return answer_message(id, Value::Null);
+        }
         match handler(self, parameters) {
             Ok(result) => answer_message(id, result),
             Err(error) => error_message(id, error.number(), &error.to_string()),
@@ -166,6 +179,10 @@ impl LanguageServer {
         let uri = document.and_then(|found| found.get("uri")).and_then(Value::as_str);
         let path = uri.and_then(place::path_of_address);
         match (method, path) {
+            ("initialized", _) => return self.workspace.watch_request().into_iter().collect(),
+            ("workspace/didChangeWorkspaceFolders", _) => {
+                self.workspace.change_folders(parameters);
+            }
             ("exit", _) => self.exit = Some(u8::from(!self.is_shut_down)),
             ("textDocument/didOpen", Some(path)) => {
                 let text = document.and_then(|found| found.get("text")).and_then(Value::as_str);
@@ -251,8 +268,8 @@ impl LanguageServer {
     /// Drops cached results after a change. Every open document is analysed again, the edited one
     /// first.
     fn forget(&mut self, edited: Option<&Path>) {
-        self.modules = None;
-        self.whole = None;
+        self.modules.clear();
+        self.whole.clear();
         let others =
             self.documents.keys().map(PathBuf::as_path).filter(|path| Some(*path) != edited);
         self.changed = edited.into_iter().chain(others).map(Path::to_owned).collect();
@@ -307,23 +324,23 @@ impl LanguageServer {
 
     /// All modules of a package, read again once a document changed.
     fn modules(&mut self, root: &Path) -> Option<Arc<PackageModules>> {
-        if let Some((_, known)) = self.modules.as_ref().filter(|(known, _)| known == root) {
+        if let Some(known) = self.modules.get(root) {
             return Some(Arc::clone(known));
         }
         let mut opened = self.opened(root)?;
         let modules = self.with_kept(root, |kept| package::read_modules(&mut opened, kept))?;
         let modules = Arc::new(modules);
-        self.modules = Some((root.to_owned(), Arc::clone(&modules)));
+        self.modules.insert(root.to_owned(), Arc::clone(&modules));
         Some(modules)
     }
 
     /// All GLSL files of a package, read again once a document changed.
     fn whole(&mut self, root: &Path) -> Option<Arc<glsl::Whole>> {
-        if let Some((_, known)) = self.whole.as_ref().filter(|(known, _)| known == root) {
+        if let Some(known) = self.whole.get(root) {
             return Some(Arc::clone(known));
         }
         let whole = Arc::new(glsl::read_whole(self.opened(root)?)?);
-        self.whole = Some((root.to_owned(), Arc::clone(&whole)));
+        self.whole.insert(root.to_owned(), Arc::clone(&whole));
         Some(whole)
     }
 

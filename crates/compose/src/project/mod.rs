@@ -9,7 +9,7 @@ mod place;
 mod wesl_toml;
 
 pub use place::{manifest_above, package_above, package_at, relative_folder, root_beside, root_of};
-pub use wesl_toml::{declared_name, home as wesl_home};
+pub use wesl_toml::{NAME as WESL_MANIFEST, declared_name, home as wesl_home};
 
 use std::path::{Component, Path, PathBuf};
 

@@ -15,7 +15,8 @@ use lamplight_diagnostic::source::{
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_files::input;
 
-pub(super) const NAME: &str = "wesl.toml";
+/// File name of the file that declares a package.
+pub const NAME: &str = "wesl.toml";
 /// The most packages that one `wesl.toml` may list.
 pub(super) const DEPENDENCIES: usize = lamplight_files::limits::PACKAGES;
 const DEFAULT_ROOT: &str = "shaders";

@@ -1,0 +1,16 @@
+//! The package's tests: messages of an editor and what the server sends, without a process.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr
+)]
+
+mod editor;
+mod manifests;
+
+fn main() -> std::process::ExitCode {
+    lamplight_testing::run_tests(&[manifests::tests])
+}
