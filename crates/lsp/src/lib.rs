@@ -9,6 +9,7 @@ mod actions;
 mod capabilities;
 mod choose;
 mod complete;
+mod dependents;
 mod failure;
 mod file_cache;
 mod format;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use super::dependents::{PackageSymbol, SharedSymbol};
 use super::members::members_at;
 use super::package::{PackageModules, WeslSymbol};
 use super::place::Lines;
@@ -81,18 +82,24 @@ pub fn references_at(
         return glsl::references_at(server, parameters);
     }
     let Some((modules, symbol, _)) = server.symbol(parameters)? else { return Ok(json!([])) };
+    let root = server.document(parameters)?.root.clone();
     let declared = parameters.pointer("/context/includeDeclaration").and_then(Value::as_bool);
-    let declarations = modules.declarations(symbol);
-    let places = modules.references(symbol).into_iter();
-    let places = places.filter(|span| declared != Some(false) || !declarations.contains(span));
-    Ok(places.filter_map(|span| server.location(&modules, span)).collect())
+    let mut found = Vec::new();
+    for package in server.shared_symbol(&root, &modules, symbol).packages {
+        let modules = &package.modules;
+        let declarations = modules.declarations(package.symbol);
+        let places = package.references().into_iter();
+        let places = places.filter(|span| declared != Some(false) || !declarations.contains(span));
+        found.extend(places.filter_map(|span| server.location(modules, span)));
+    }
+    Ok(Value::Array(found))
 }
 
 /// Why a symbol cannot be renamed; `None` if it can.
-fn why_fixed(modules: &PackageModules, symbol: WeslSymbol) -> Option<&'static str> {
+fn why_fixed(shared: &SharedSymbol, symbol: WeslSymbol) -> Option<&'static str> {
     match symbol {
-        WeslSymbol::Items { node, .. } if modules.graph.nodes[node as usize].package != 0 => {
-            Some("it is declared in another package")
+        WeslSymbol::Items { .. } if !shared.is_at_home => {
+            Some("it is declared in a package that is not in the folders of the editor")
         }
         WeslSymbol::Items { .. } | WeslSymbol::Local { .. } => None,
         WeslSymbol::Flag(_) => Some("axes and features are named in more than these files"),
@@ -121,7 +128,9 @@ pub fn prepare_rename(
     let Some((modules, symbol, span)) = server.symbol(parameters)? else {
         return Ok(Value::Null);
     };
-    if let Some(reason) = why_fixed(&modules, symbol) {
+    let root = server.document(parameters)?.root.clone();
+    let shared = server.shared_symbol(&root, &modules, symbol);
+    if let Some(reason) = why_fixed(&shared, symbol) {
         return Err(reason.to_owned().into());
     }
     let text = &modules.sources.get(span.source).text;
@@ -153,7 +162,9 @@ pub fn rename_symbol(
     let Some((modules, symbol, span)) = server.symbol(parameters)? else {
         return Err(RequestError::NoName);
     };
-    if let Some(reason) = why_fixed(&modules, symbol) {
+    let root = server.document(parameters)?.root.clone();
+    let shared = server.shared_symbol(&root, &modules, symbol);
+    if let Some(reason) = why_fixed(&shared, symbol) {
         return Err(reason.to_owned().into());
     }
     if let Some(reason) = why_no_name(&new) {
@@ -162,18 +173,25 @@ pub fn rename_symbol(
     let declared = modules.declarations(symbol);
     let old = declared.first().map(|span| modules.sources.text(*span).to_owned());
     let old = old.ok_or_else(|| "its declaration is not known".to_owned())?;
-    if let Some(taken) = name_taken_in(&modules, symbol, &new) {
-        return Err(format!("`{new}` is already declared in `{taken}`").into());
-    }
     // The place that was asked about may write an alias, which is a name of its own.
     if modules.sources.text(last_name(&modules.sources.get(span.source).text, span)) != old {
         return Err("this is another name for it: rename it in its import".to_owned().into());
     }
-    let places = modules.references(symbol).into_iter().filter_map(|span| {
-        let text: &str = &modules.sources.get(span.source).text;
-        let name = last_name(text, span);
-        let uri = || report::address_of(&modules.sources, span.source, &*server.library);
-        (modules.sources.text(name) == old).then(|| (uri(), text, name.range()))
+    shared.refuse_unread(&old)?;
+    for package in &shared.packages {
+        if let Some(taken) = name_taken_in(package, &new) {
+            return Err(format!("`{new}` is already declared in `{taken}`").into());
+        }
+    }
+    let places = shared.packages.iter().flat_map(|package| {
+        let sources = &package.modules.sources;
+        let places = package.references().into_iter().filter_map(|span| {
+            let text: &str = &sources.get(span.source).text;
+            let name = last_name(text, span);
+            let uri = || report::address_of(sources, span.source, &*server.library);
+            (sources.text(name) == old).then(|| (uri(), text, name.range()))
+        });
+        places.collect::<Vec<_>>()
     });
     report::rename_json(&new, places)
 }
@@ -205,9 +223,10 @@ fn is_short_type(word: &str) -> bool {
 }
 
 /// A module that declares or uses the symbol and already has the new name.
-fn name_taken_in(modules: &PackageModules, symbol: WeslSymbol, new: &str) -> Option<String> {
+fn name_taken_in(package: &PackageSymbol, new: &str) -> Option<String> {
+    let modules = &package.modules;
     let name: Name = modules.graph.names.find(new)?;
-    let places = modules.references(symbol);
+    let places = package.references();
     let nodes = modules.graph.nodes.iter();
     let mut used = nodes.filter(|node| places.iter().any(|span| span.source == node.module.source));
     let has = |node: &&lamplight_compose::resolve::wesl::ModuleNode| {

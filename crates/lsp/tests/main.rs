@@ -10,7 +10,8 @@
 
 mod editor;
 mod manifests;
+mod workspace;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[manifests::tests])
+    lamplight_testing::run_tests(&[manifests::tests, workspace::tests])
 }

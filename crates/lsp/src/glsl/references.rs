@@ -1,7 +1,9 @@
 //! References, symbols and signatures in the GLSL files of a package.
 
 use crate::failure::RequestError;
+use std::collections::BTreeSet;
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::{Value, json};
@@ -16,6 +18,7 @@ use crate::{LanguageServer, hover, report};
 use lamplight_catalogue as catalogue;
 use lamplight_compose::project::LIBRARY;
 use lamplight_compose::resolve::{ROOT, glsl};
+use lamplight_syntax::glsl::Symbol;
 
 /// Extensions of the files that are read even if no file includes them.
 const EXTENSIONS: &[&str] = &["glsl", "vert", "frag", "comp"];
@@ -38,6 +41,8 @@ pub fn read_whole(mut opened: OpenedPackage) -> Option<Whole> {
 
 /// The symbol that a request is about, in its file.
 pub struct RequestedSymbol {
+    /// The root folder of the package.
+    pub root: PathBuf,
     pub whole: Arc<Whole>,
     pub file: usize,
     pub meant: Meant,
@@ -55,7 +60,7 @@ pub fn requested_symbol(
     let Some(whole) = server.whole(&root) else { return Ok(None) };
     let Some(file) = whole.file(&path) else { return Ok(None) };
     let found = whole.units.meant(file, byte as u32);
-    Ok(found.map(|(meant, range)| RequestedSymbol { whole, file, meant, range }))
+    Ok(found.map(|(meant, range)| RequestedSymbol { root, whole, file, meant, range }))
 }
 
 impl Whole {
@@ -64,6 +69,11 @@ impl Whole {
         let shown = self.opened.packages.root.files.display(path);
         let paths = &self.units.names.graph.paths;
         (0..paths.len()).find(|file| self.units.is_own(*file) && paths[*file] == shown)
+    }
+
+    /// The path of a file on the disk.
+    fn real_file(&self, file: usize) -> Option<PathBuf> {
+        Path::new(&self.units.names.graph.paths[file]).canonicalize().ok()
     }
 
     pub fn location(&self, server: &LanguageServer, place: &NamePlace) -> Option<Value> {
@@ -92,7 +102,53 @@ pub fn references_at(
     let (all, declarations) = requested.whole.units.places(&requested.meant, requested.file);
     let places =
         all.iter().filter(|place| declared != Some(false) || !declarations.contains(place));
-    Ok(places.take(PLACES).filter_map(|place| requested.whole.location(server, place)).collect())
+    let mut found: Vec<Value> =
+        places.take(PLACES).filter_map(|place| requested.whole.location(server, place)).collect();
+    let (dependents, _) = places_of_dependents(server, &requested, &declarations);
+    for (whole, places) in dependents {
+        found.extend(places.iter().take(PLACES).filter_map(|place| whole.location(server, place)));
+    }
+    Ok(Value::Array(found))
+}
+
+/// Packages with their places that name a symbol.
+type DependentPlaces = Vec<(Arc<Whole>, Vec<NamePlace>)>;
+
+/// Where other packages of the workspace name a symbol that files of this one declare, and which of
+/// them cannot be read.
+pub fn places_of_dependents(
+    server: &mut LanguageServer,
+    requested: &RequestedSymbol,
+    declared: &[NamePlace],
+) -> (DependentPlaces, Vec<String>) {
+    let units = &requested.whole.units;
+    let (name, of_name): (_, fn(Symbol) -> Meant) = match &requested.meant {
+        Meant::Local(..) => return (Vec::new(), Vec::new()),
+        Meant::Member(name) => (*name, Meant::Member),
+        Meant::Global(name) => (*name, Meant::Global),
+    };
+    let own = declared.iter().filter(|place| units.is_own(place.file));
+    let files: BTreeSet<PathBuf> =
+        own.filter_map(|place| requested.whole.real_file(place.file)).collect();
+    if files.is_empty() {
+        return (Vec::new(), Vec::new());
+    }
+    let dependents = server.dependents(&requested.root, units.spelt(name));
+    let mut found = Vec::new();
+    for root in dependents.roots {
+        let Some(whole) = server.whole(&root) else { continue };
+        let graph = &whole.units.names.graph;
+        let Some(name) = graph.symbols.find(units.spelt(name)) else { continue };
+        let is_declaring =
+            |file: &usize| whole.real_file(*file).is_some_and(|file| files.contains(&file));
+        let Some(file) = (0..graph.paths.len()).find(is_declaring) else { continue };
+        let (mut places, _) = whole.units.places(&of_name(name), file);
+        places.retain(|place| whole.units.is_own(place.file));
+        if !places.is_empty() {
+            found.push((whole, places));
+        }
+    }
+    (found, dependents.unread)
 }
 
 /// If an `#include` is at the position, all places that include the same file.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use super::references::{PLACES, RequestedSymbol, requested_symbol};
+use super::references::{PLACES, RequestedSymbol, places_of_dependents, requested_symbol};
 use super::text_of;
 use super::units::{Meant, NamePlace, Units, Use};
 use crate::place::Lines;
@@ -24,7 +24,8 @@ pub fn prepare_rename(
     parameters: &Value,
 ) -> Result<Value, RequestError> {
     let Some(requested) = requested_symbol(server, parameters)? else { return Ok(Value::Null) };
-    renamed_places(&requested)?;
+    let places = renamed_places(&requested)?;
+    refuse_dependents(server, &requested, &places)?;
     let lines = Lines::new(&requested.whole.units.module(requested.file).text);
     Ok(lines.range(requested.range.start as usize..requested.range.end as usize))
 }
@@ -41,6 +42,7 @@ pub fn rename_symbol(
         .to_owned();
     let requested = requested_symbol(server, parameters)?.ok_or(RequestError::NoName)?;
     let places = renamed_places(&requested)?;
+    refuse_dependents(server, &requested, &places)?;
     check_new(&requested, &places, &new)?;
     let places = places.iter().map(|place| {
         let module = requested.whole.units.module(place.file);
@@ -80,6 +82,38 @@ fn renamed_places(requested: &RequestedSymbol) -> Result<Vec<NamePlace>, String>
     }
     check_locals(requested, &files)?;
     Ok(all)
+}
+
+/// The most files that a refusal names.
+const NAMED: usize = 8;
+
+/// Fails where other packages of the workspace name what would be renamed: what these names mean
+/// may depend on more than their files.
+fn refuse_dependents(
+    server: &mut LanguageServer,
+    requested: &RequestedSymbol,
+    places: &[NamePlace],
+) -> Result<(), String> {
+    let (dependents, unread) = places_of_dependents(server, requested, places);
+    if let Some(reason) = unread.first() {
+        return Err(format!("uses may be missed: {reason}"));
+    }
+    let files: BTreeSet<String> = dependents
+        .iter()
+        .flat_map(|(whole, places)| {
+            let paths = &whole.units.names.graph.paths;
+            places.iter().map(|place| paths[place.file].clone())
+        })
+        .collect();
+    if files.is_empty() {
+        return Ok(());
+    }
+    let named: Vec<String> = files.iter().take(NAMED).map(|file| format!("`{file}`")).collect();
+    let more = match files.len() - named.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    Err(format!("other packages name it: {}{more}", named.join(", ")))
 }
 
 fn spelt_at(units: &Units, place: &NamePlace) -> String {
