@@ -10,8 +10,9 @@
 
 mod editor;
 mod manifests;
+mod unclosed;
 mod workspace;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[manifests::tests, workspace::tests])
+    lamplight_testing::run_tests(&[manifests::tests, unclosed::tests, workspace::tests])
 }

@@ -1,7 +1,9 @@
 //! The package's tests.
 
+mod damaged;
 mod tokens;
 
 fn main() -> std::process::ExitCode {
-    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), tokens::tests()).exit_code()
+    let tests = damaged::tests().into_iter().chain(tokens::tests()).collect();
+    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), tests).exit_code()
 }

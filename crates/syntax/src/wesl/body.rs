@@ -47,17 +47,19 @@ pub fn scan_body(
         locals: Vec::new(),
         free: Vec::new(),
         traced,
+        error: None,
         module,
     };
     for (index, place) in places.into_iter().enumerate() {
         scanner.events = std::mem::take(&mut scanner.module.items[index].events);
         let outcome = scanner.item(place, scanner.module.items[index].kind);
+        outcome.err().into_iter().for_each(|error| scanner.fail(error));
         scanner.scopes.leave(0);
         let item = &mut scanner.module.items[index];
         item.events = std::mem::take(&mut scanner.events);
         item.locals = sorted_names(&mut scanner.locals);
         item.free = sorted_names(&mut scanner.free);
-        scanner.module.errors.extend(outcome.err());
+        scanner.module.errors.extend(scanner.error.take());
     }
 }
 
@@ -81,9 +83,16 @@ struct BodyScanner<'a, 'b> {
     locals: Vec<Name>,
     free: Vec<Name>,
     traced: bool,
+    /// The first error of the item. Scanning goes on with the next statement.
+    error: Option<Diagnostic>,
 }
 
 impl BodyScanner<'_, '_> {
+    /// Keeps the first error of an item.
+    fn fail(&mut self, error: Diagnostic) {
+        self.error.get_or_insert(error);
+    }
+
     fn item(&mut self, place: ItemPlace, kind: ItemKind) -> Result<(), Diagnostic> {
         self.attributes(place.start, place.keyword)?;
         let mut at = place.keyword + 1;
@@ -115,28 +124,26 @@ impl BodyScanner<'_, '_> {
             return Err(self.tokens.expected(open, "`(` and the parameters"));
         }
         let close = self.tokens.partner(open);
-        let parameters = self.fields(open, close)?;
+        let parameters = self.fields(open, close);
         let body = self.brace(close + 1, end)?;
-        self.uses(close + 1, body)?;
+        self.uses(close + 1, body).err().into_iter().for_each(|error| self.fail(error));
         for (at, condition) in parameters {
             self.declare(at, condition)?;
         }
-        self.block(body)
+        self.block(body);
+        Ok(())
     }
 
     fn members(&mut self, open: usize) -> Result<(), Diagnostic> {
         if !self.tokens.is(open, b'{') {
             return Err(self.tokens.expected(open, "`{` and the members"));
         }
-        self.fields(open, self.tokens.partner(open)).map(drop)
+        self.fields(open, self.tokens.partner(open));
+        Ok(())
     }
 
     /// Parameters or struct members: `attributes name : type ,`.
-    fn fields(
-        &mut self,
-        open: usize,
-        close: usize,
-    ) -> Result<Vec<(usize, Option<ConditionId>)>, Diagnostic> {
+    fn fields(&mut self, open: usize, close: usize) -> Vec<(usize, Option<ConditionId>)> {
         let mut fields = Vec::new();
         let mut chain = Chain::default();
         let mut at = open + 1;
@@ -144,16 +151,27 @@ impl BodyScanner<'_, '_> {
             let start = at;
             let attributes = condition::read_attributes(self.module, self.tokens, at, &mut chain);
             let node = self.open_node(attributes.condition);
-            self.attributes(start, attributes.end)?;
-            self.tokens.identifier(attributes.end, "a name")?;
-            fields.push((attributes.end, attributes.condition));
-            let colon = self.tokens.expect(attributes.end + 1, b':', "`:` and a type")?;
-            let end = self.type_end(colon, close);
-            self.uses(colon, end)?;
-            at = (end + 1).min(close);
+            if let Err(error) = self.field(start, attributes, close, &mut fields) {
+                self.fail(error);
+            }
+            at = (self.type_end(attributes.end, close) + 1).min(close);
             self.close_node(node, start, at);
         }
-        Ok(fields)
+        fields
+    }
+
+    fn field(
+        &mut self,
+        start: usize,
+        attributes: Attributes,
+        close: usize,
+        fields: &mut Vec<(usize, Option<ConditionId>)>,
+    ) -> Result<(), Diagnostic> {
+        self.attributes(start, attributes.end)?;
+        self.tokens.identifier(attributes.end, "a name")?;
+        fields.push((attributes.end, attributes.condition));
+        let colon = self.tokens.expect(attributes.end + 1, b':', "`:` and a type")?;
+        self.uses(colon, self.type_end(colon, close))
     }
 
     /// The comma or bracket that ends a type: commas in `<...>` are part of it.
@@ -174,7 +192,14 @@ impl BodyScanner<'_, '_> {
 
     /// The `{` that starts a body after `from`.
     fn brace(&self, from: usize, limit: usize) -> Result<usize, Diagnostic> {
-        self.tokens.find(from, limit, b'{').ok_or_else(|| self.tokens.expected(limit, "`{`"))
+        let mut at = from;
+        while at < limit && !self.tokens.is(at, b'{') {
+            if self.tokens.is(at, b';') || self.begins_statement(at) {
+                return Err(self.tokens.expected(at, "`{`"));
+            }
+            at = self.tokens.partner(at).max(at) + 1;
+        }
+        if at < limit { Ok(at) } else { Err(self.tokens.expected(limit, "`{`")) }
     }
 
     /// Declares a parameter or a local, whose name is at a token.
@@ -339,16 +364,62 @@ impl BodyScanner<'_, '_> {
 
 impl BodyScanner<'_, '_> {
     /// The block whose `{` is at `open`.
-    fn block(&mut self, open: usize) -> Result<(), Diagnostic> {
-        let close = self.tokens.partner(open);
+    fn block(&mut self, open: usize) {
         let scope = self.scopes.enter();
-        let mut chain = Chain::default();
-        let mut at = open + 1;
-        while at < close {
-            at = self.node(at, close, &mut chain)?;
-        }
+        self.nodes(open + 1, self.tokens.partner(open), Chain::default());
         self.scopes.leave(scope);
-        Ok(())
+    }
+
+    /// The statements up to a brace. After one with an error, they go on with the next one.
+    fn nodes(&mut self, from: usize, close: usize, mut chain: Chain) {
+        let mut at = from;
+        while at < close {
+            let (events, uses) = (self.events.len(), self.module.local_uses.len());
+            at = match self.node(at, close, &mut chain) {
+                Ok(end) => end,
+                Err(error) => {
+                    self.fail(error);
+                    let end = self.next_statement(at, close);
+                    if (self.events.len(), self.module.local_uses.len()) == (events, uses) {
+                        // Editors ask for what it names all the same.
+                        self.uses(at, end).err().into_iter().for_each(|error| self.fail(error));
+                    }
+                    self.close_nodes(events, at, end);
+                    end
+                }
+            };
+        }
+    }
+
+    /// The first token behind a statement with an error: that of the next statement or block.
+    fn next_statement(&self, from: usize, limit: usize) -> usize {
+        let mut at = from;
+        while at < limit {
+            if at > from && (self.begins_statement(at) || self.tokens.is(at, b'{')) {
+                return at;
+            }
+            if self.tokens.is(at, b';') {
+                return at + 1;
+            }
+            at = self.tokens.partner(at).max(at) + 1;
+        }
+        limit
+    }
+
+    /// Whether a word begins a statement, though what is before it is not ended.
+    fn begins_statement(&self, at: usize) -> bool {
+        let is_inner =
+            at > 0 && (self.tokens.is(at - 1, b'@') || self.tokens.is_word(at - 1, Name::BREAK));
+        !is_inner && self.tokens.word(at).is_some_and(Name::begins_statement)
+    }
+
+    /// Ends the conditional nodes that an error left open.
+    fn close_nodes(&mut self, first: usize, start: usize, end: usize) {
+        for index in first..self.events.len() {
+            if matches!(self.events[index], Event::Node { next: 0, .. }) {
+                self.close_node(Some(index), start, end);
+            }
+        }
     }
 
     /// A statement with its attributes.
@@ -372,11 +443,7 @@ impl BodyScanner<'_, '_> {
         let head = removed_head(self.tokens, start, open);
         self.events.push(Event::Cut { start: head.start, end: head.end });
         let (close, mark) = (self.tokens.partner(open), self.scopes.enter());
-        let mut chain = Chain::within(attributes.condition);
-        let mut at = open + 1;
-        while at < close {
-            at = self.node(at, close, &mut chain)?;
-        }
+        self.nodes(open + 1, close, Chain::within(attributes.condition));
         self.scopes.end_block(mark);
         let tail = removed_tail(self.tokens, close);
         self.events.push(Event::Cut { start: tail.start.max(head.end), end: tail.end });
@@ -401,9 +468,9 @@ impl BodyScanner<'_, '_> {
             Some(Name::ELSE) => Err(self.misplaced_else(at)),
             _ if self.tokens.is(at, b'{') => self.headed_block(at, limit),
             _ => {
-                let end = self.semicolon(at, limit)?;
+                let (end, next) = self.semicolon(at, limit)?;
                 self.uses(at, end)?;
-                Ok(end + 1)
+                Ok(next)
             }
         }
     }
@@ -426,7 +493,7 @@ impl BodyScanner<'_, '_> {
     fn headed_block(&mut self, at: usize, limit: usize) -> Result<usize, Diagnostic> {
         let open = self.brace(at, limit)?;
         self.uses(at, open)?;
-        self.block(open)?;
+        self.block(open);
         Ok(self.tokens.partner(open) + 1)
     }
 
@@ -440,7 +507,7 @@ impl BodyScanner<'_, '_> {
     }
 
     fn switch(&mut self, at: usize, limit: usize) -> Result<usize, Diagnostic> {
-        let open = self.brace(at, limit)?;
+        let open = self.brace(at + 1, limit)?;
         self.uses(at + 1, open)?;
         let close = self.tokens.partner(open);
         let mut chain = Chain::default();
@@ -485,18 +552,26 @@ impl BodyScanner<'_, '_> {
     ) -> Result<usize, Diagnostic> {
         let name_at = self.var_template(at + 1);
         self.tokens.identifier(name_at, "a name")?;
-        let end = self.semicolon(name_at, limit)?;
+        let ending = self.semicolon(name_at, limit);
+        let end = match &ending {
+            Ok((end, _)) => *end,
+            Err(_) => self.next_statement(name_at, limit),
+        };
         self.uses(name_at + 1, end)?;
         self.declare(name_at, condition)?;
-        Ok(end + 1)
+        ending.map(|(_, next)| next)
     }
 
-    /// The index of the semicolon that ends the statement at `at`.
-    fn semicolon(&self, at: usize, limit: usize) -> Result<usize, Diagnostic> {
+    /// The end of the statement at `at`, and the start of what follows: behind its semicolon, or a
+    /// word that begins the next statement, where naga reports that the semicolon is missing.
+    fn semicolon(&self, at: usize, limit: usize) -> Result<(usize, usize), Diagnostic> {
         let mut end = at;
         while end < limit && !self.tokens.is(end, b'{') {
             if self.tokens.is(end, b';') {
-                return Ok(end);
+                return Ok((end, end + 1));
+            }
+            if end > at && self.begins_statement(end) {
+                return Ok((end, end));
             }
             end = self.tokens.partner(end).max(end) + 1;
         }

@@ -72,10 +72,11 @@ pub fn read_attributes(
                     }
                 }
             }
-            Some(name) => {
+            Some(name) if !name.begins_item() && !name.begins_block_statement() => {
                 found.entry |= matches!(tokens.names.text(name), "vertex" | "fragment" | "compute")
             }
-            None => {
+            // A declaration or a statement after an attribute whose name is not written yet.
+            Some(_) | None => {
                 module.errors.push(tokens.expected(name_at, "the name of an attribute"));
                 found.end = name_at;
                 found.condition = found.condition.or(chain.within);

@@ -50,10 +50,25 @@ pub fn split_items(module: &mut Module, tokens: &[Token], names: &Names) -> Vec<
     splitter.places
 }
 
-/// The index after the next semicolon or closing brace that is outside of brackets.
+/// The index after the next semicolon or closing brace that is outside of brackets, or of the next
+/// declaration.
 fn recover_from(tokens: Tokens<'_>, from: usize, limit: usize) -> usize {
     let mut at = from;
+    let mut first_attribute = None;
     while at < limit {
+        if tokens.is(at, b'@') {
+            first_attribute = first_attribute.or(Some(at));
+            let arguments = at + 2;
+            at = if tokens.is(arguments, b'(') { tokens.partner(arguments) + 1 } else { arguments };
+            continue;
+        }
+        let start = first_attribute.take().unwrap_or(at);
+        let begins = KINDS.iter().any(|(name, _)| tokens.is_word(at, *name))
+            || tokens.is_word(at, Name::IMPORT);
+        let is_named = tokens.word(at + 1).is_some() || tokens.is(at + 1, b'<');
+        if begins && is_named && start > from {
+            return start;
+        }
         if tokens.is(at, b';') {
             return at + 1;
         }
@@ -63,7 +78,7 @@ fn recover_from(tokens: Tokens<'_>, from: usize, limit: usize) -> usize {
             return at;
         }
     }
-    at
+    at.min(limit)
 }
 
 struct ItemSplitter<'a, 'b> {
@@ -235,6 +250,8 @@ impl ItemSplitter<'_, '_> {
             match (self.tokens.is(at, b';'), self.tokens.is(at, b'{')) {
                 (true, _) if !braced => return Ok(at + 1),
                 (_, true) if braced => return Ok(self.tokens.partner(at) + 1),
+                // The next declaration begins. Where its semicolon is missing, naga says so.
+                _ if !braced && at > keyword + 1 && self.begins_item(at) => return Ok(at),
                 (false, false) => at = self.tokens.partner(at).max(at) + 1,
                 _ => break,
             }
@@ -252,6 +269,13 @@ impl ItemSplitter<'_, '_> {
             format!("{what} of `{}` lacks its `{mark}`", self.tokens.text(keyword)),
         )
         .at(self.tokens.span(label), format!("expected `{mark}` after this"))
+    }
+
+    /// Whether a word or an attribute begins a declaration.
+    fn begins_item(&self, at: usize) -> bool {
+        self.tokens.is(at, b'@')
+            || KINDS.iter().any(|(name, _)| self.tokens.is_word(at, *name))
+            || self.tokens.is_word(at, Name::IMPORT)
     }
 
     fn starts_node(&self, at: usize) -> bool {

@@ -3,6 +3,7 @@
 //! There is no syntax tree: composing needs items, scopes and conditions, and naga parses the
 //! composed text anyway.
 
+mod balance;
 pub mod blank;
 mod body;
 mod condition;
@@ -27,8 +28,9 @@ use lamplight_diagnostic::source::SourceId;
 /// The most errors of one file that are reported.
 const ERRORS: usize = 50;
 
-/// Parses a file. Its errors are in [`Module::errors`]. Some of the text after an error may not be
-/// parsed.
+/// Parses a file. Its errors are in [`Module::errors`]. After an error, parsing goes on with the next
+/// statement or declaration. An error of brackets, comments or characters is the only one of its
+/// file.
 pub fn parse(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
     parse_with(source, text, names, false)
 }
@@ -82,10 +84,15 @@ fn empty_module(source: SourceId, text: Arc<str>) -> Module {
 
 fn parse_with(source: SourceId, text: Arc<str>, names: &mut Names, locals: bool) -> Module {
     let mut module = empty_module(source, Arc::clone(&text));
-    match token::tokenize(&text, source, names) {
-        Ok(tokens) => {
+    match token::tokenize_damaged(&text, source, names) {
+        Ok(token::DamagedTokens { tokens, error }) => {
             let found = item::split_items(&mut module, &tokens, names);
             body::scan_body(&mut module, &tokens, names, found, locals);
+            if let Some(error) = error {
+                // What else is found may follow from it.
+                module.errors = vec![error];
+                module.warnings.clear();
+            }
         }
         Err(error) => module.errors.push(error),
     }

@@ -2,6 +2,7 @@
 //! access to tokens by index. Identifiers become numbers, which are cheap to compare and can index
 //! tables.
 
+use crate::wesl::balance::balance_brackets;
 use crate::wesl::blank::{block_comment, is_blank, line_comment};
 use crate::words::{begins_word, number_end, same_bytes, word_end};
 use lamplight_diagnostic::source::{LIMITS, SourceId, Span};
@@ -36,15 +37,48 @@ pub struct Token {
 
 /// Splits a text into tokens. The error is about the first thing that cannot be a token.
 pub fn tokenize(text: &str, source: SourceId, names: &mut Names) -> Result<Vec<Token>, Diagnostic> {
-    let mut scanner = TokenScanner { text, bytes: text.as_bytes(), at: 0, source };
+    let found = tokenize_damaged(text, source, names)?;
+    found.error.map_or(Ok(found.tokens), Err)
+}
+
+/// The tokens of a text that may have mistakes.
+pub struct DamagedTokens {
+    /// All brackets have partners.
+    pub tokens: Vec<Token>,
+    /// The first mistake: a character or a bracket.
+    pub error: Option<Diagnostic>,
+}
+
+/// After so many comments that are never closed, the rest of a text is one.
+const OPEN_COMMENTS: usize = 16;
+
+/// Splits a text into tokens, going on after mistakes: what cannot be a token is left out, a block
+/// comment that is never closed ends with its line, and brackets are balanced.
+///
+/// # Errors
+/// For a text beyond a limit.
+pub fn tokenize_damaged(
+    text: &str,
+    source: SourceId,
+    names: &mut Names,
+) -> Result<DamagedTokens, Diagnostic> {
+    let mut scanner = TokenScanner { text, bytes: text.as_bytes(), at: 0, source, unclosed: 0 };
     let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4);
     let mut open: Vec<u32> = Vec::new();
+    let mut mistakes = Mistakes::default();
     if text.starts_with('\u{feff}') {
         scanner.at = '\u{feff}'.len_utf8();
     }
-    while scanner.skip_blank()? {
+    while scanner.next_token(&mut mistakes) {
         let start = scanner.at;
-        let kind = scanner.token(names)?;
+        let kind = match scanner.token(names) {
+            Ok(kind) => kind,
+            Err(error) => {
+                mistakes.add(error);
+                scanner.at += scanner.character().map_or(1, char::len_utf8);
+                continue;
+            }
+        };
         let index = tokens.len() as u32;
         tokens.push(Token { kind, start: start as u32, end: scanner.at as u32, partner: index });
         if tokens.len() > LIMITS.tokens {
@@ -55,18 +89,39 @@ pub fn tokenize(text: &str, source: SourceId, names: &mut Names) -> Result<Vec<T
             .at(scanner.span(start), "the first one too many"));
         }
         match kind {
+            // From the first wrong bracket on, partners are looked for in the whole text.
+            _ if mistakes.is_unbalanced => {}
             TokenKind::Mark(b'(' | b'[' | b'{') => {
                 push_bracket(&mut open, index, scanner.span(start))?
             }
             TokenKind::Mark(mark @ (b')' | b']' | b'}')) => {
-                close_bracket(&mut tokens, &mut open, mark, &scanner, start)?
+                let closed = close_bracket(&mut tokens, &mut open, mark, &scanner, start);
+                mistakes.is_unbalanced = closed.is_err();
+                closed.err().into_iter().for_each(|error| mistakes.add(error));
             }
             _ => {}
         }
     }
-    match open.last() {
-        Some(index) => Err(unclosed_bracket(&tokens[*index as usize], source)),
-        None => Ok(tokens),
+    if let Some(index) = open.last().filter(|_| !mistakes.is_unbalanced) {
+        mistakes.is_unbalanced = true;
+        mistakes.add(unclosed_bracket(&tokens[*index as usize], source));
+    }
+    if mistakes.is_unbalanced {
+        tokens = balance_brackets(&tokens, text);
+    }
+    Ok(DamagedTokens { tokens, error: mistakes.first })
+}
+
+/// What is wrong with a text so far.
+#[derive(Default)]
+struct Mistakes {
+    first: Option<Diagnostic>,
+    is_unbalanced: bool,
+}
+
+impl Mistakes {
+    fn add(&mut self, error: Diagnostic) {
+        self.first.get_or_insert(error);
     }
 }
 
@@ -130,9 +185,21 @@ struct TokenScanner<'a> {
     bytes: &'a [u8],
     at: usize,
     source: SourceId,
+    /// How many block comments were never closed.
+    unclosed: usize,
 }
 
 impl TokenScanner<'_> {
+    /// Goes to the next token, past comments that are never closed; false at the end of the text.
+    fn next_token(&mut self, mistakes: &mut Mistakes) -> bool {
+        loop {
+            match self.skip_blank() {
+                Ok(goes_on) => return goes_on,
+                Err(error) => mistakes.add(error),
+            }
+        }
+    }
+
     fn span(&self, start: usize) -> Span {
         Span::new(self.source, start..self.at)
     }
@@ -172,6 +239,10 @@ impl TokenScanner<'_> {
         self.at += length;
         if is_closed {
             return Ok(());
+        }
+        self.unclosed += 1;
+        if self.unclosed <= OPEN_COMMENTS {
+            self.at = start + line_comment(&self.text[start..]);
         }
         Err(Diagnostic::error(codes::UNTERMINATED_COMMENT, "a block comment is never closed")
             .at(Span::new(self.source, start..start + 2), "opened here")
@@ -407,9 +478,9 @@ macro_rules! words {
 }
 
 words! {
-    UNDERSCORE = "_", ALIAS = "alias", CASE = "case", CONST = "const", CONST_ASSERT = "const_assert", CONTINUING = "continuing",
-    DEFAULT = "default", DIAGNOSTIC = "diagnostic", ELSE = "else", ENABLE = "enable", FALSE = "false", FN = "fn", FOR = "for",
-    IF = "if", LET = "let", LOOP = "loop", OVERRIDE = "override", REQUIRES = "requires", STRUCT = "struct", SWITCH = "switch",
+    UNDERSCORE = "_", ALIAS = "alias", BREAK = "break", CASE = "case", CONST = "const", CONST_ASSERT = "const_assert", CONTINUE = "continue", CONTINUING = "continuing",
+    DEFAULT = "default", DIAGNOSTIC = "diagnostic", DISCARD = "discard", ELSE = "else", ENABLE = "enable", FALSE = "false", FN = "fn", FOR = "for",
+    IF = "if", LET = "let", LOOP = "loop", OVERRIDE = "override", REQUIRES = "requires", RETURN = "return", STRUCT = "struct", SWITCH = "switch",
     TRUE = "true", VAR = "var", WHILE = "while", IMPORT = "import", PACKAGE = "package", SUPER = "super", AS = "as", ELIF = "elif",
     CONSTANTS = "constants",
 }
@@ -426,6 +497,33 @@ const fn known_position(word: &str) -> u32 {
 }
 
 impl Name {
+    /// Whether the word begins a declaration of the module, and nothing else.
+    pub fn begins_item(self) -> bool {
+        [Self::FN, Self::STRUCT, Self::OVERRIDE, Self::ALIAS, Self::IMPORT].contains(&self)
+    }
+
+    /// Whether the word begins a statement, and is in no expression.
+    pub fn begins_statement(self) -> bool {
+        [Self::CONST, Self::CONST_ASSERT, Self::IF].contains(&self) || self.begins_block_statement()
+    }
+
+    /// Whether the word begins a statement, and no condition.
+    pub fn begins_block_statement(self) -> bool {
+        let words = [
+            Self::BREAK,
+            Self::CONTINUE,
+            Self::DISCARD,
+            Self::FOR,
+            Self::LET,
+            Self::LOOP,
+            Self::RETURN,
+            Self::SWITCH,
+            Self::VAR,
+            Self::WHILE,
+        ];
+        words.contains(&self)
+    }
+
     /// Whether WGSL forbids the word as an identifier, or WESL does: `import`, `package` and
     /// `super`.
     pub fn is_keyword(self) -> bool {
