@@ -27,7 +27,7 @@ pub mod wire;
 mod workspace;
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -244,7 +244,7 @@ impl LanguageServer {
             }
         }
         document.version = version;
-        self.forget(Some(path));
+        self.forget_edited(path);
         Vec::new()
     }
 
@@ -266,14 +266,32 @@ impl LanguageServer {
         self.closed = self.left_files().into_iter().chain(self.closed_modules()).collect();
     }
 
-    /// Drops cached results after a change. Every open document is analysed again, the edited one
-    /// first.
-    fn forget(&mut self, edited: Option<&Path>) {
+    /// Drops cached results after files or documents came, went or were saved. Every open document
+    /// is analysed again, the opened one first.
+    fn forget(&mut self, opened: Option<&Path>) {
+        self.file_cache.forget_listings();
+        self.look_again(opened, |_| true);
+    }
+
+    /// Drops cached results after an edit. Documents that read the edited one are analysed again.
+    fn forget_edited(&mut self, edited: &Path) {
+        let Some(document) = self.documents.get(edited) else { return };
+        let shown = document.root.join(&document.path).to_string_lossy().into_owned();
+        let users: BTreeSet<PathBuf> = self
+            .documents
+            .keys()
+            .filter(|path| self.changed.contains(path) || self.findings.may_read(path, &shown))
+            .cloned()
+            .collect();
+        self.look_again(Some(edited), |path| users.contains(path));
+    }
+
+    fn look_again(&mut self, first: Option<&Path>, is_meant: impl Fn(&Path) -> bool) {
         self.modules.clear();
         self.whole.clear();
-        let others =
-            self.documents.keys().map(PathBuf::as_path).filter(|path| Some(*path) != edited);
-        self.changed = edited.into_iter().chain(others).map(Path::to_owned).collect();
+        let others = self.documents.keys().map(PathBuf::as_path);
+        let others = others.filter(|path| Some(*path) != first && is_meant(path));
+        self.changed = first.into_iter().chain(others).map(Path::to_owned).collect();
         let documents = &self.documents;
         let is_open = |root: &PathBuf| documents.values().any(|document| document.root == *root);
         self.kept.get_mut().retain(|root, _| is_open(root));

@@ -39,7 +39,13 @@ impl Files for EditorFiles {
     }
 
     fn list(&self, extensions: &[&str]) -> Vec<String> {
-        let mut found = self.below.list(extensions);
+        let mut found = match self.below.on_disk("") {
+            true => {
+                let list = || self.below.list(extensions);
+                self.file_cache.or_list(self.below.display(""), extensions, list)
+            }
+            false => self.below.list(extensions),
+        };
         let is_new = |path: &&String| {
             let ending = path.rsplit_once('.').map_or("", |(_, ending)| ending);
             extensions.contains(&ending) && !found.contains(path)

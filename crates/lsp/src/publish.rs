@@ -27,6 +27,9 @@ pub struct Findings {
     found: BTreeMap<PathBuf, Found>,
     /// By address, what the editor shows.
     shown: BTreeMap<String, Vec<Value>>,
+    /// By open document: the files that its analysis read. None are known where its package could
+    /// not be opened.
+    read: BTreeMap<PathBuf, BTreeSet<String>>,
 }
 
 /// What is wrong with a module, its imports and its package.
@@ -37,6 +40,8 @@ struct Analysis {
     note: Option<String>,
     /// What the permutation takes away.
     inactive: Vec<Value>,
+    /// Whether the package was opened.
+    is_opened: bool,
 }
 
 impl LanguageServer {
@@ -44,13 +49,17 @@ impl LanguageServer {
     /// messages with what is shown now.
     pub(super) fn publish(&mut self, file: &Path) -> Vec<Value> {
         let uri = place::file_address(file);
-        let found = match self.documents.get(file) {
+        let (found, read) = match self.documents.get(file) {
             Some(document) => self.found_in(document, &uri, true),
             None => match self.closed_document(file) {
                 Some(document) => self.found_in(&document, &uri, false),
-                None => Found::new(),
+                None => (Found::new(), None),
             },
         };
+        match read.filter(|_| self.documents.contains_key(file)) {
+            Some(read) => drop(self.findings.read.insert(file.to_owned(), read)),
+            None => drop(self.findings.read.remove(file)),
+        }
         let old = match found.is_empty() && !self.documents.contains_key(file) {
             true => self.findings.found.remove(file),
             false => self.findings.found.insert(file.to_owned(), found.clone()),
@@ -96,7 +105,14 @@ impl LanguageServer {
         Some(Document { text, version: Value::Null, root, path })
     }
 
-    fn found_in(&self, document: &Document, uri: &str, is_open: bool) -> Found {
+    /// What is wrong, by the file that it is shown at; and the files that were read, if the package
+    /// could be opened.
+    fn found_in(
+        &self,
+        document: &Document,
+        uri: &str,
+        is_open: bool,
+    ) -> (Found, Option<BTreeSet<String>>) {
         let analysis = self.analyse(document, is_open);
         let (sources, library) = (&analysis.sources, &*self.library);
         let mut found = Found::new();
@@ -116,19 +132,26 @@ impl LanguageServer {
             }
         }
         analysis.inactive.into_iter().for_each(|hint| show(uri, hint));
-        found
+        let read = sources.iter().map(|(_, source)| source.path.clone());
+        let read = analysis.is_opened.then(|| read.collect());
+        (found, read)
     }
 
     fn analyse(&self, document: &Document, is_open: bool) -> Analysis {
-        let failed =
-            |sources, problems| Analysis { sources, problems, note: None, inactive: Vec::new() };
+        let failed = |sources, problems, is_opened| Analysis {
+            sources,
+            problems,
+            note: None,
+            inactive: Vec::new(),
+            is_opened,
+        };
         let mut opened = match self.open_package(&document.root) {
             Ok(opened) => opened,
-            Err((sources, problems)) => return failed(sources, problems),
+            Err((sources, problems)) => return failed(sources, problems, false),
         };
         let mut problems = std::mem::take(&mut opened.problems);
         if !is_module(&document.path) {
-            return failed(opened.sources, problems);
+            return failed(opened.sources, problems, true);
         }
         let (settings, note) =
             module_settings(&opened, &document.path, &self.choice(&document.root));
@@ -139,11 +162,17 @@ impl LanguageServer {
                     true => inactive::inactive_hints(&document.text, &graph, &settings),
                     false => Vec::new(),
                 };
-                Analysis { sources: opened.sources, problems, note: Some(note), inactive }
+                Analysis {
+                    sources: opened.sources,
+                    problems,
+                    note: Some(note),
+                    inactive,
+                    is_opened: true,
+                }
             }
             Err(more) => {
                 problems.extend(more);
-                failed(opened.sources, problems)
+                failed(opened.sources, problems, true)
             }
         }
     }
@@ -175,6 +204,11 @@ impl LanguageServer {
 }
 
 impl Findings {
+    /// Whether the analysis of an open document may change with a file.
+    pub fn may_read(&self, document: &Path, file: &str) -> bool {
+        self.read.get(document).is_none_or(|read| read.contains(file))
+    }
+
     /// What is shown of a closed file: what its own analysis found, or else all others.
     fn of_closed(&self, address: &str, path: Option<&Path>) -> Vec<Value> {
         let own = path.and_then(|path| self.found.get(path)).and_then(|found| found.get(address));

@@ -9,10 +9,16 @@
 )]
 
 mod editor;
+mod edits;
 mod manifests;
 mod unclosed;
 mod workspace;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[manifests::tests, unclosed::tests, workspace::tests])
+    lamplight_testing::run_tests(&[
+        edits::tests,
+        manifests::tests,
+        unclosed::tests,
+        workspace::tests,
+    ])
 }

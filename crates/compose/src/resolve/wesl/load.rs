@@ -1,6 +1,6 @@
 //! Reads modules until no path leads to a new one.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
@@ -37,7 +37,7 @@ pub struct Loader<'a> {
     /// be read.
     known: HashMap<(usize, String), Result<Option<u32>, Diagnostic>>,
     /// The files of a package, once a module of it is missing.
-    listings: FxHashMap<usize, Vec<String>>,
+    listings: RefCell<FxHashMap<usize, Arc<Vec<String>>>>,
     /// The steps that looking names up may still take.
     steps: Cell<Steps>,
     /// The steps that looking names up has taken.
@@ -65,7 +65,7 @@ impl<'a> Loader<'a> {
             kept: None,
             reductions: None,
             known: HashMap::new(),
-            listings: FxHashMap::default(),
+            listings: RefCell::default(),
             steps: Cell::new(Steps::new(RESOLVE_STEPS)),
             spent: Cell::new(0),
             notes: LoadNotes::default(),
@@ -307,9 +307,11 @@ impl<'a> Loader<'a> {
     }
 
     /// Files of a package, sorted.
-    pub(super) fn listing(&mut self, package: usize) -> &[String] {
+    pub(super) fn listing(&self, package: usize) -> Arc<Vec<String>> {
         let files = &self.package(package).files;
-        self.listings.entry(package).or_insert_with(|| files.list(&["wesl", "wgsl"]))
+        let mut listings = self.listings.borrow_mut();
+        let listing = listings.entry(package);
+        Arc::clone(listing.or_insert_with(|| Arc::new(files.list(&["wesl", "wgsl"]))))
     }
 
     /// Whether anything in a module uses a name.

@@ -1,5 +1,7 @@
 //! Finds what a path names: follows imports and packages to a module, and finds the item in it.
 
+use std::sync::Arc;
+
 use super::graph::{Candidate, ConstantUse, PathTarget};
 use super::load::Loader;
 use lamplight_diagnostic::source::{LIMITS, Span};
@@ -198,7 +200,7 @@ impl Loader<'_> {
             Diagnostic::error(codes::UNKNOWN_PACKAGE, format!("there is no package `{first}`"))
                 .at(span, "not a package");
         let importer = self.nodes[node as usize].package;
-        let files = self.package(importer).files.list(&["wesl", "wgsl"]);
+        let files = self.listing(importer);
         let own = files.iter().any(|file| file.split(['/', '.']).next() == Some(first));
         if own {
             return error
@@ -314,16 +316,13 @@ impl Loader<'_> {
         let path: Vec<String> = path.iter().map(|name| self.names.text(*name).to_owned()).collect();
         let label = self.label(package, &path);
         let shown = self.package(package).files.display(&path.join("/"));
-        let listing = if self.failures.len() < SUGGESTED {
-            self.listing(package).to_vec()
-        } else {
-            Vec::new()
-        };
+        let listing =
+            if self.failures.len() < SUGGESTED { self.listing(package) } else { Arc::default() };
         let mut known: Vec<String> = Vec::new();
-        for file in listing {
+        for file in listing.iter() {
             let parts: Vec<String> = file
                 .rsplit_once('.')
-                .map_or(&*file, |(stem, _)| stem)
+                .map_or(file.as_str(), |(stem, _)| stem)
                 .split('/')
                 .map(str::to_owned)
                 .collect();
