@@ -3,17 +3,27 @@
 use std::collections::BTreeMap;
 
 use lamplight_compose::resolve::Graph;
+use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_syntax::wesl::Item;
 
 /// A warning for each module whose path is that of another but for the case of letters.
-pub fn alike_modules<'a>(paths: impl Iterator<Item = &'a String>) -> Diagnostics {
+pub fn alike_modules<'a>(modules: impl Iterator<Item = (&'a String, &'a Graph)>) -> Diagnostics {
     let mut known: BTreeMap<String, &str> = BTreeMap::new();
     let mut found = Diagnostics::new();
-    for path in paths {
+    for (path, graph) in modules {
         if let Some(other) = known.insert(path.to_lowercase(), path) {
             let message = format!("the modules `{other}` and `{path}` differ only in case");
-            found.push(noted(Diagnostic::warning(codes::CASE_COLLISION, message)));
+            let warning = Diagnostic::warning(codes::CASE_COLLISION, message);
+            let source = match graph {
+                Graph::Wesl(graph) => graph.nodes.first().map(|node| node.module.source),
+                Graph::Glsl(graph) => graph.modules.first().map(|module| module.source),
+            };
+            let start = source.map(|source| Span { source, start: 0, end: 0 });
+            found.push(noted(match start {
+                Some(start) => warning.at(start, "this module"),
+                None => warning,
+            }));
         }
     }
     found

@@ -6,6 +6,8 @@ mod flags;
 mod settings;
 mod stages;
 
+pub use case::alike_entry_points;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use lamplight_bundle::Language;
@@ -81,7 +83,7 @@ pub fn lint_within(sources: &mut SourceSet, request: &Request<'_>, whole: u64) -
             Err(errors) => linted.diagnostics.extend(reductions.visible(errors)),
         }
     }
-    linted.diagnostics.extend(case::alike_modules(graphs.keys()));
+    linted.diagnostics.extend(case::alike_modules(graphs.iter()));
     let included = included_files(sources, &graphs);
     for (path, graph) in &graphs {
         linted.diagnostics.extend(case::alike_entry_points(graph));

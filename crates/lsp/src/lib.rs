@@ -9,6 +9,7 @@ mod actions;
 mod capabilities;
 mod choose;
 mod complete;
+mod declared;
 mod dependents;
 mod failure;
 mod file_cache;
@@ -67,6 +68,7 @@ pub struct LanguageServer {
     /// By root folder of a package: what was parsed, which a keystroke in one file does not change.
     kept: RefCell<BTreeMap<PathBuf, KeptModules>>,
     file_cache: Arc<file_cache::FileCache>,
+    declared: declared::DeclaredPackages,
     /// By root folder of a package: its modules, kept until a document changes.
     modules: BTreeMap<PathBuf, Arc<PackageModules>>,
     /// The same for the GLSL files of a package.
@@ -115,6 +117,7 @@ impl LanguageServer {
             choices: BTreeMap::new(),
             kept: RefCell::default(),
             file_cache: Arc::default(),
+            declared: declared::DeclaredPackages::default(),
             modules: BTreeMap::new(),
             whole: BTreeMap::new(),
             changed: VecDeque::new(),
@@ -327,7 +330,8 @@ impl LanguageServer {
     }
 
     fn open_package(&self, root: &Path) -> Result<OpenedPackage, (SourceSet, Diagnostics)> {
-        package::open_package(root, self.files, &self.texts(root), &self.file_cache)
+        let (files, declared) = (self.files, &self.declared);
+        package::open_package(root, files, &self.texts(root), &self.file_cache, declared)
     }
 
     /// A graph with a module as its root.

@@ -66,6 +66,7 @@ pub fn module_graph(
 /// What is wrong with a module under the settings: names, conditions, then what naga says.
 pub fn module_problems(graph: &Graph, settings: &Settings, path: &str) -> Diagnostics {
     let mut found = graph.undeclared(settings);
+    found.extend(lint::alike_entry_points(graph));
     // Undeclared features are reported above. For the other checks they count as off.
     let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };
     match compose::compose(graph, &settings, &lint::lint_options(graph, path)) {

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::declared::DeclaredPackages;
 use super::file_cache::FileCache;
 use lamplight_compose::project;
 use lamplight_compose::resolve::Packages;
@@ -78,7 +79,7 @@ pub struct OpenedPackage {
     pub root: PathBuf,
     pub sources: SourceSet,
     pub packages: Packages,
-    pub manifest: Option<Manifest>,
+    pub manifest: Option<Arc<Manifest>>,
     pub features: Features,
     /// The diagnostics of the files that declare the package.
     pub problems: Diagnostics,
@@ -91,6 +92,7 @@ pub fn open_package(
     library: Embedded,
     texts: &OpenTexts,
     file_cache: &Arc<FileCache>,
+    declared: &DeclaredPackages,
 ) -> Result<OpenedPackage, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let packages = match root.exists() {
@@ -108,19 +110,17 @@ pub fn open_package(
         // The root comes first. Only its files may be open.
         cover_files(package, root, own.take().unwrap_or(&none), file_cache)
     });
+    let declared = declared.or_read(root, sources);
     let mut problems = packages.warnings.clone();
-    let manifest = project::manifest(root, &mut sources).unwrap_or_else(|more| {
-        problems.extend(more);
-        None
-    });
-    let features = match &manifest {
-        Some(manifest) => manifest.features.clone(),
-        None => project::features(root, &mut sources).unwrap_or_else(|more| {
-            problems.extend(more);
-            Features::default()
-        }),
-    };
-    Ok(OpenedPackage { root: root.to_owned(), sources, packages, manifest, features, problems })
+    problems.extend(declared.problems.iter().cloned());
+    Ok(OpenedPackage {
+        root: root.to_owned(),
+        sources: declared.sources.clone(),
+        packages,
+        manifest: declared.manifest.clone(),
+        features: declared.features.clone(),
+        problems,
+    })
 }
 
 /// Makes a package read open texts in place of files, and cached texts of files that have not

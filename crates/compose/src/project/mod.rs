@@ -8,7 +8,9 @@ mod names;
 mod place;
 mod wesl_toml;
 
-pub use place::{manifest_above, package_above, package_at, relative_folder, root_beside, root_of};
+pub use place::{
+    manifest_above, manifest_of, package_above, package_at, relative_folder, root_beside, root_of,
+};
 pub use wesl_toml::{NAME as WESL_MANIFEST, declared_name, home as wesl_home};
 
 use std::path::{Component, Path, PathBuf};
