@@ -21,6 +21,7 @@ const INVALID: &[(&str, &str)] = &[
     ("assign", "fn f() { let a = 1.0; a = 2.0; }"),
     ("twice", "const a = 1;\nconst a = 2;"),
     ("cycle", "fn f() { g(); }\nfn g() { f(); }"),
+    ("cycle_and_type", "const a = b;\nconst b = a;\nfn f() -> f32 { return 1u; }"),
     ("import", "import package::util::nothing;\nfn f() -> f32 { return nothing(); }"),
     ("position", "@vertex fn f() -> @location(0) vec4f { return vec4f(); }"),
     ("location_out", "@fragment fn f() -> vec4f { return vec4f(); }"),

@@ -154,7 +154,7 @@ fn lint_module(graph: &Graph, request: &Request<'_>, path: &str) -> Diagnostics 
 }
 
 /// Checks the items of a module one by one, if it cannot be composed as a whole.
-fn one_by_one(graph: &Graph, settings: &Settings) -> Diagnostics {
+pub fn one_by_one(graph: &Graph, settings: &Settings) -> Diagnostics {
     let mut found = Diagnostics::new();
     for name in graph.root_items() {
         let options = Options { keep: Keep::Items(vec![name]), ..Options::default() };

@@ -71,7 +71,14 @@ pub fn module_problems(graph: &Graph, settings: &Settings, path: &str) -> Diagno
     let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };
     match compose::compose(graph, &settings, &lint::lint_options(graph, path)) {
         Ok(composed) => found.extend(lint::lint_text(graph, &composed)),
-        Err(errors) => found.extend(errors),
+        Err(errors) => {
+            found.extend(errors);
+            for error in lint::one_by_one(graph, &settings) {
+                if !found.contains(&error) {
+                    found.push(error);
+                }
+            }
+        }
     }
     found
 }
