@@ -6,9 +6,13 @@ use lamplight_diagnostic::source::SourceId;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Label, codes};
 use lamplight_glsl::is_for_vulkan;
 use lamplight_glsl::tree::Stage as GlslStage;
-use lamplight_glsl::wgsl::{Clip, Options, Written};
+use lamplight_glsl::wgsl::{Clip, Fact, Options, Written};
 
 use super::{hints, limits, lint, on_large_stack, validate_for_some};
+
+/// How a location is found that fits the other stage.
+const OTHER_STAGE: &str =
+    "help: it is counted in this file alone; `--with FILE` names the other stage of the program";
 
 /// Stands for the composed text, which is no source of the author's.
 const COMPOSED: SourceId = SourceId(u32::MAX);
@@ -64,6 +68,10 @@ pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnos
     }
     let warnings = facts.list.iter().map(|(fact, at)| {
         let warning = Diagnostic::warning(codes::TRANSLATED_OTHERWISE, fact.to_string());
+        let warning = match fact {
+            Fact::Location(..) => warning.note(OTHER_STAGE),
+            _ => warning,
+        };
         let place = Some(at.range()).filter(|range| !range.is_empty());
         match place.and_then(|range| composed.map.lookup(range)) {
             Some(span) => warning.at(span, "declared here"),
