@@ -53,13 +53,7 @@ pub fn read_attributes(
         let arguments = tokens.is(name_at + 1, b'(').then_some(name_at + 1);
         match tokens.word(name_at) {
             Some(Name::IF | Name::ELIF | Name::ELSE) if first.is_some() => {
-                let error = illegal_attribute(
-                    tokens,
-                    name_at,
-                    "a node has two translate-time attributes",
-                    "the second one",
-                );
-                module.errors.push(error.note("help: join the conditions with `&&`"));
+                module.errors.push(second_condition(tokens, name_at));
             }
             Some(word @ (Name::IF | Name::ELIF | Name::ELSE)) => {
                 first = Some(name_at);
@@ -90,6 +84,12 @@ pub fn read_attributes(
     found.conditional = first.is_some();
     found.condition = found.condition.or(chain.within);
     found
+}
+
+fn second_condition(tokens: Tokens<'_>, name_at: usize) -> Diagnostic {
+    let message = "a node has two translate-time attributes";
+    illegal_attribute(tokens, name_at, message, "the second one")
+        .note("help: join the conditions with `&&`")
 }
 
 /// Whether the token at `at` starts a translate-time attribute.

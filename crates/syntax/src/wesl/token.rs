@@ -82,11 +82,7 @@ pub fn tokenize_damaged(
         let index = tokens.len() as u32;
         tokens.push(Token { kind, start: start as u32, end: scanner.at as u32, partner: index });
         if tokens.len() > LIMITS.tokens {
-            return Err(Diagnostic::error(
-                codes::TOO_MANY_TOKENS,
-                format!("more than {} tokens in one file", LIMITS.tokens),
-            )
-            .at(scanner.span(start), "the first one too many"));
+            return Err(too_many_tokens(scanner.span(start)));
         }
         match kind {
             // From the first wrong bracket on, partners are looked for in the whole text.
@@ -110,6 +106,11 @@ pub fn tokenize_damaged(
         tokens = balance_brackets(&tokens, text);
     }
     Ok(DamagedTokens { tokens, error: mistakes.first })
+}
+
+fn too_many_tokens(first: Span) -> Diagnostic {
+    let message = format!("more than {} tokens in one file", LIMITS.tokens);
+    Diagnostic::error(codes::TOO_MANY_TOKENS, message).at(first, "the first one too many")
 }
 
 /// What is wrong with a text so far.
