@@ -282,6 +282,17 @@ mod tests {
     }
 
     #[test]
+    fn numbers_that_are_not_read() {
+        let [vertex, fragment] = lines(
+            "const int FIRST = 2; layout(location = FIRST + 1) out vec4 a; out vec4 b;\n\
+             layout(push_constant) uniform Push { vec4 c; };",
+            "layout(location = 3) in vec4 a; in vec4 b;",
+        );
+        assert_eq!(vertex, ["out b 0", "binding Push 0"]);
+        assert_eq!(fragment, ["in b 0"]);
+    }
+
+    #[test]
     fn functions_have_no_numbers() {
         let [vertex, fragment] = lines(
             "layout(location = 0) in vec3 at; void f(in vec3 a, out vec3 b) { b = a; }\nvoid main() {}",

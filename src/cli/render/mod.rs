@@ -341,7 +341,7 @@ fn chosen_point(
 }
 
 fn make_shot(arguments: &Arguments, executor: &ExecutorEntry) -> Result<Shot, Failure> {
-    let (size, samples) = if arguments.all {
+    let (size, samples) = if arguments.all || arguments.comparisons {
         (picture::gallery::SIZE, executor.samples.map(|few| if few > 1 { SAMPLES } else { few }))
     } else {
         ([512; 2], executor.samples)

@@ -126,7 +126,9 @@ struct Qualifiers {
     location: Option<u32>,
     binding: Option<u32>,
     group: u32,
-    push: bool,
+    /// Whether a number is given that is not read here, such as a sum of constants. The translator
+    /// reads it.
+    unread: bool,
 }
 
 /// Words before a type that decide nothing here.
@@ -249,12 +251,15 @@ impl<'t> Scanned<'t> {
 
     fn layout(&self, file: &File<'t>, range: std::ops::Range<usize>, found: &mut Qualifiers) {
         for at in range {
-            let given = file.is(at + 1, "=").then(|| self.size_at(file, at + 2)).flatten();
+            let is_given = file.is(at + 1, "=");
+            let is_single = file.is(at + 3, ",") || file.is(at + 3, ")");
+            let given = (is_given && is_single).then(|| self.size_at(file, at + 2)).flatten();
+            let is_number = matches!(file.word(at), Some("location" | "binding" | "set"));
+            found.unread |= is_given && is_number && given.is_none();
             match file.word(at) {
                 Some("location") => found.location = given,
                 Some("binding") => found.binding = given,
                 Some("set") => found.group = given.unwrap_or(0),
-                Some("push_constant") => found.push = true,
                 _ => {}
             }
         }
@@ -345,9 +350,9 @@ impl<'t> Scanned<'t> {
     }
 
     fn block(&mut self, qualifiers: &Qualifiers, name: &'t str, parts: Parts, elements: u32) {
-        let Qualifiers { input, output, uniform, buffer, location, binding, group, push: _ } =
+        let Qualifiers { input, output, uniform, buffer, location, binding, group, unread } =
             *qualifiers;
-        if name.starts_with("gl_") {
+        if unread || name.starts_with("gl_") {
             return;
         }
         let count = parts.locations.saturating_mul(elements);
@@ -366,9 +371,9 @@ impl<'t> Scanned<'t> {
     }
 
     fn variable(&mut self, qualifiers: &Qualifiers, name: &'t str, parts: Parts) {
-        let Qualifiers { input, output, uniform, buffer: _, location, binding, group, push: _ } =
+        let Qualifiers { input, output, uniform, buffer: _, location, binding, group, unread } =
             *qualifiers;
-        if name.starts_with("gl_") {
+        if unread || name.starts_with("gl_") {
             return;
         }
         self.interface(input, output, name, parts.locations, location);
