@@ -24,8 +24,6 @@ pub fn number(path: &str) -> Vec<f64> {
     }
     match name {
         "count" => vec![3.0],
-        // Some alphas are below one half after the vertices' and the texture's, and some above.
-        "color" if path.starts_with("object") => vec![0.4, 0.7, 0.6, 1.6],
         "kind" => vec![index + 1.0],
         "light" => vec![0.0],
         "range" | "far" => vec![12.0],
@@ -70,6 +68,7 @@ fn special(path: &str, name: &str, index: usize) -> Option<Vec<f64>> {
         .or_else(|| cluster(name, index))
         .or_else(|| cascade(path, name))
         .or_else(|| probes(path, name))
+        .or_else(|| tint(path, name))
 }
 
 /// How a lamp reads its light profile: from which direction angles around its axis count, and the
@@ -97,6 +96,12 @@ fn cluster(name: &str, index: usize) -> Option<Vec<f64>> {
         }
         _ => None,
     }
+}
+
+/// The colour of an object. Some alphas are below one half after the vertices' and the texture's, and
+/// some above.
+fn tint(path: &str, name: &str) -> Option<Vec<f64>> {
+    (path.starts_with("object") && name == "color").then(|| vec![0.4, 0.7, 0.6, 1.6])
 }
 
 /// Shadow cascades whose split distances cross the sheet.
