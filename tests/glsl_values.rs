@@ -136,13 +136,8 @@ fn translated(text: &str) -> Result<String, String> {
 
 /// Words are the same; with a tolerance, they are floats.
 fn is_near(a: u32, b: u32, tolerance: f32) -> bool {
-    // The two zeros are equal: neither language keeps the sign of one through a sum or a product that
-    // a compiler may contract (SPIR-V 1.6, section 2.16.1, asks for it with an execution mode only).
-    if a == b || [a, b] == [0, 1 << 31] || [a, b] == [1 << 31, 0] {
-        return true;
-    }
-    if tolerance == 0.0 {
-        return false;
+    if a == b || tolerance == 0.0 {
+        return a == b;
     }
     let (a, b) = (f32::from_bits(a), f32::from_bits(b));
     a.is_nan() && b.is_nan()

@@ -34,8 +34,6 @@ use same::{Finding, Output, Verdict};
 
 /// How many programs the tests make.
 const PROGRAMS: u64 = 200;
-/// How many of them the tests of a day make.
-const FEW: u64 = 100;
 /// The seed of the first program.
 const SEED: u64 = 1;
 /// The external validators are given every 20th program.
@@ -68,8 +66,7 @@ fn number(name: &str, usual: u64) -> Result<u64, Failed> {
 }
 
 fn random_programs() -> Result<(), Failed> {
-    let usual = if crate::is_whole() { PROGRAMS } else { FEW };
-    let programs = number("LAMPLIGHT_LINK_PROGRAMS", usual)?;
+    let programs = number("LAMPLIGHT_LINK_PROGRAMS", PROGRAMS)?;
     let seed = number("LAMPLIGHT_LINK_SEED", SEED)?;
     if std::env::var_os("LAMPLIGHT_LINK_PRINT").is_some() {
         let program = program(seed);

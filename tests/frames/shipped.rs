@@ -25,7 +25,7 @@ use crate::fragments::{self, Tally, Watched};
 /// The number of permutations of each language. All pairs of values are among them.
 const LEAST_POINTS: usize = 200;
 /// How many of them the tests draw. `cargo xtask frames` draws all.
-const DRAWN_POINTS: usize = 9;
+const DRAWN_POINTS: usize = 12;
 /// How many of programs that are smaller than `forward`.
 const DRAWN_OF_SMALL: usize = 4;
 /// The size of a frame in pixels.

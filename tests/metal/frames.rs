@@ -20,7 +20,7 @@ use crate::frames::{PROGRAMS, Scene, Sources, bundle, most_open, most_points, po
 const LEAST_POINTS: usize = 200;
 /// How many permutations of each program and language the tests draw. `cargo xtask frames` draws
 /// all.
-const DRAWN_POINTS: usize = 40;
+const DRAWN_POINTS: usize = 64;
 /// The size of a frame in pixels.
 const SIZE: [u32; 2] = [128, 64];
 /// Every 29th quad is computed again.

@@ -299,3 +299,16 @@ fn known_stage(stage: ShaderStage) -> Option<bundle::Stage> {
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::targets;
+    use lamplight_validate::{CAPABILITIES, SOME_TARGET_HAS};
+
+    /// The validator accepts what at least one target writes, and nothing else.
+    #[test]
+    fn some_target_has_what_is_accepted() {
+        let all = targets::ALL.iter().fold(CAPABILITIES, |all, one| all.union(one.capabilities));
+        assert_eq!(all, SOME_TARGET_HAS);
+    }
+}

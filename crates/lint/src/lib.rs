@@ -11,6 +11,7 @@ pub use case::alike_entry_points;
 use std::collections::{BTreeMap, BTreeSet};
 
 use lamplight_bundle::Language;
+use lamplight_compose::glsl::named_stage;
 use lamplight_compose::resolve::wesl::{self, Reductions};
 use lamplight_compose::resolve::{self, Graph, Packages};
 use lamplight_compose::{self as compose, Composed, Keep, Options};
@@ -45,12 +46,13 @@ pub struct Linted {
 pub fn language(path: &str) -> Option<Language> {
     match path.rsplit_once('.')?.1 {
         "wesl" | "wgsl" => Some(Language::Wesl),
-        "glsl" | "vert" | "frag" | "comp" => Some(Language::Glsl),
-        _ => None,
+        "glsl" => Some(Language::Glsl),
+        _ => named_stage(path).map(|_| Language::Glsl),
     }
 }
 
-/// Extensions of modules.
+/// Extensions of the modules that are looked for in folders. Files that end in `.cs` and `.fs` are
+/// often something else, so they are modules only where they are named.
 pub const EXTENSIONS: &[&str] = &["wesl", "wgsl", "glsl", "vert", "frag", "comp"];
 
 /// Looks at modules of the root package.
@@ -173,23 +175,17 @@ pub fn one_by_one(graph: &Graph, settings: &Settings) -> Diagnostics {
 /// they also keep what it includes.
 pub fn lint_options(graph: &Graph, path: &str) -> Options {
     let keep = match graph {
-        Graph::Glsl(_) if has_stage(path) => Keep::All,
+        Graph::Glsl(_) if named_stage(path).is_some() => Keep::All,
         _ => Keep::Root,
     };
     Options { keep, ..Options::default() }
-}
-
-/// Whether the name of a GLSL file says for which stage it is.
-fn has_stage(path: &str) -> bool {
-    let stem = path.strip_suffix(".glsl").unwrap_or(path);
-    [".vert", ".frag", ".comp"].iter().any(|ending| stem.ends_with(ending))
 }
 
 /// The warnings from composing a text, then what naga finds in it.
 pub fn lint_text(graph: &Graph, composed: &Composed) -> Diagnostics {
     let mut warnings = graph.own(composed.warnings.clone());
     if let Graph::Glsl(graph) = graph
-        && has_stage(&graph.root)
+        && named_stage(&graph.root).is_some()
     {
         warnings.extend(stages::mistakes_of_stage(composed));
     }

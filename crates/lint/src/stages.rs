@@ -57,9 +57,9 @@ fn shared_memory(composed: &Composed, words: &[PlacedWord<'_>]) -> Option<Diagno
     Some(placed(composed, error, shared, "not in this stage"))
 }
 
-fn placed(composed: &Composed, told: Diagnostic, range: &Range<usize>, label: &str) -> Diagnostic {
+fn placed(composed: &Composed, found: Diagnostic, range: &Range<usize>, label: &str) -> Diagnostic {
     match composed.map.lookup(range.clone()) {
-        Some(span) => told.at(span, label),
-        None => told,
+        Some(span) => found.at(span, label),
+        None => found,
     }
 }

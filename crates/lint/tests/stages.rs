@@ -1,4 +1,4 @@
-//! Mistakes of the stages of GLSL that no front end tells.
+//! Mistakes of the stages of GLSL that no front end reports.
 
 use std::collections::BTreeMap;
 
@@ -14,10 +14,10 @@ pub fn tests() -> Vec<Trial> {
 }
 
 /// What is found, and where.
-type Told = (Severity, &'static str);
+type Finding = (Severity, &'static str);
 
 /// A name, the text below its version, and what is found.
-const STAGES: &[(&str, &str, Option<Told>)] = &[
+const STAGES: &[(&str, &str, Option<Finding>)] = &[
     ("a.vert", "void main() {}", Some((Severity::Warning, "main"))),
     ("a.vert", "void main() { gl_Position = vec4(1.0); }", None),
     (
@@ -27,6 +27,7 @@ const STAGES: &[(&str, &str, Option<Told>)] = &[
     ),
     ("a.frag", "shared int a;\nvoid main() {}", Some((Severity::Error, "shared"))),
     ("a.frag", "layout(shared, binding = 0) uniform A { int a; };\nvoid main() {}", None),
+    ("a.vs", "void main() {}", Some((Severity::Warning, "main"))),
     ("a.comp", "shared int a;\nlayout(local_size_x = 1) in;\nvoid main() { a = 1; }", None),
     ("a.glsl", "shared int a;\nint f() { return a; }", None),
 ];
@@ -42,9 +43,9 @@ fn stages_of_glsl() -> Result<(), Failed> {
         let request =
             Request { packages: &packages, manifest: None, settings: &settings, paths: &paths };
         let found = lint(&mut sources, &request).diagnostics;
-        let told = found.iter().map(|told| (told.severity, sources.text(told.labels[0].span)));
-        let told: Vec<_> = told.collect();
-        if told != expected.as_slice() {
+        let listed = found.iter().map(|one| (one.severity, sources.text(one.labels[0].span)));
+        let listed: Vec<_> = listed.collect();
+        if listed != expected.as_slice() {
             return Err(format!("{name}: `{text}` gives {found:#?}").into());
         }
     }

@@ -122,7 +122,7 @@ impl LanguageServer {
     }
 
     /// The packages of the workspace that depend on the one with this root, directly or through
-    /// others. Those that cannot be opened are told if one of their files has the name.
+    /// others. Those that cannot be opened are listed if one of their files has the name.
     pub fn dependents(&self, home: &Path, name: &str) -> Dependents {
         let mut packages = self.workspace.packages();
         packages.roots.extend(self.documents.values().map(|document| document.root.clone()));

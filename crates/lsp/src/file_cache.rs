@@ -1,4 +1,5 @@
-//! A cache of the files on the disk and of what folders have. A text is valid while its file is as it was when it was read.
+//! A cache of the files on the disk and of what folders have. A text is valid while its file is as
+//! it was when it was read.
 //! A keystroke asks for every file of a package, and asking the system whether a file has changed
 //! takes a fifth of reading it.
 

@@ -177,19 +177,24 @@ const TYPED: &[(&str, &str, &str)] = &[
     ("let z = \"ne", "near", "most"),
 ];
 
+/// What the server answers at the end of what is typed.
+fn asked_behind(typed: &str, method: &str) -> Result<Value, Failed> {
+    let text = with_inserted(typed);
+    let mut editor = Editor::new(&[("main.wesl", &text), ("util.wesl", UTIL)])?;
+    editor.open("main.wesl")?;
+    let end = text.find(typed).ok_or("not inserted")? + typed.len();
+    let place = json!({
+        "textDocument": { "uri": editor.uri("main.wesl")? },
+        "position": position(&text, end),
+    });
+    editor.ask(method, place)
+}
+
 /// While arguments are typed, locals and members are offered, and the function that is called is
 /// known.
 fn arguments() -> Result<(), Failed> {
     for (typed, offered, other) in TYPED {
-        let text = with_inserted(typed);
-        let mut editor = Editor::new(&[("main.wesl", &text), ("util.wesl", UTIL)])?;
-        editor.open("main.wesl")?;
-        let end = text.find(typed).ok_or("not inserted")? + typed.len();
-        let place = json!({
-            "textDocument": { "uri": editor.uri("main.wesl")? },
-            "position": position(&text, end),
-        });
-        let found = editor.ask("textDocument/completion", place)?;
+        let found = asked_behind(typed, "textDocument/completion")?;
         let items = if found.is_array() { &found } else { &found["items"] };
         let labels: Vec<&str> = items
             .as_array()
@@ -200,15 +205,7 @@ fn arguments() -> Result<(), Failed> {
         expect(labels.contains(offered) && !labels.contains(other), &(typed, labels))?;
     }
     let typed = "let z = falloff(max(1.0, 2.0), ";
-    let text = with_inserted(typed);
-    let mut editor = Editor::new(&[("main.wesl", &text), ("util.wesl", UTIL)])?;
-    editor.open("main.wesl")?;
-    let end = text.find(typed).ok_or("not inserted")? + typed.len();
-    let place = json!({
-        "textDocument": { "uri": editor.uri("main.wesl")? },
-        "position": position(&text, end),
-    });
-    let found = editor.ask("textDocument/signatureHelp", place)?;
+    let found = asked_behind(typed, "textDocument/signatureHelp")?;
     let label = found["signatures"][0]["label"].as_str().unwrap_or_default();
     expect(label.contains("falloff(distance: f32") && found["activeParameter"] == 1, &found)
 }

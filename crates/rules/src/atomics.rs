@@ -36,7 +36,7 @@ fn only_places(tree: &Tree<'_>) -> Vec<bool> {
                 places[*base as usize] = true;
             }
             ExprKind::AddressOf(operand) => places[*operand as usize] = true,
-            // What is within brackets is told of at the brackets.
+            // What is within brackets is reported at the brackets.
             ExprKind::Parenthesized(inner) => places[*inner as usize] = true,
             ExprKind::Literal(_)
             | ExprKind::Name { .. }

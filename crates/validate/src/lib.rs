@@ -101,8 +101,8 @@ pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
     }
 }
 
-/// Parses and validates what at least one target has. What a target lacks of it is told by
-/// [`lacking`].
+/// Parses and validates what at least one target has. [`lacking`] reports what a
+/// target lacks of it.
 ///
 /// # Errors
 /// As [`validate`]; `not-portable` for what no target has.

@@ -49,15 +49,7 @@ impl Packages {
         }
         names.entry(root.name.clone()).or_insert(ROOT);
         let scopes = vec![Scope { names, manifest: None }; dependencies.len() + 1];
-        Self {
-            root,
-            warnings: Vec::new(),
-            definitions: String::new(),
-            ending: String::new(),
-            includes: Vec::new(),
-            dependencies,
-            scopes,
-        }
+        Self::scoped(root, dependencies, scopes)
     }
 
     /// Packages with what each of them declares, the root first. The names of the packages must
