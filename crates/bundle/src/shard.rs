@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 /// Which parts of a bundle are here, and what they were made of. A whole bundle has none: its bytes
-/// do not show how many runs made it.
+/// do not show how many runs made it. The lock file of integer keys is not named here, since no byte
+/// of a bundle depends on it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShardOrigin {
     /// The numbers of the parts, from 1.

@@ -16,6 +16,7 @@ mod uniformity;
 
 use std::ops::Range;
 
+pub use constants::fold;
 pub use syntax::Severity;
 pub use uniformity::Summary;
 

@@ -9,13 +9,14 @@
 )]
 
 mod cases;
+mod constants;
 mod programs;
 mod verdicts;
 
 use lamplight_testing::random;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[cases::tests, verdicts::tests])
+    lamplight_testing::run_tests(&[cases::tests, constants::tests, verdicts::tests])
 }
 
 /// The problems of a text that are errors for browsers.

@@ -42,7 +42,7 @@ fn compare(seed: u64, is_accepted: bool) -> Result<(), Failed> {
     }
 }
 
-fn number(name: &str, usual: u64) -> u64 {
+pub fn number(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |text| text.parse().expect("a number"))
 }
 
@@ -61,11 +61,11 @@ fn verdicts_of_tint() -> Result<(), Failed> {
     Ok(())
 }
 
-fn tint(argument: &str) -> std::io::Result<std::process::Output> {
+pub fn tint(argument: &str) -> std::io::Result<std::process::Output> {
     Command::new("tint").arg(argument).output()
 }
 
-fn accepts(file: &Path) -> std::io::Result<bool> {
+pub fn accepts(file: &Path) -> std::io::Result<bool> {
     let output = Command::new("tint").args(["--format", "wgsl"]).arg(file).output()?;
     Ok(output.status.success())
 }

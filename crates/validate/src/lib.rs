@@ -178,7 +178,7 @@ fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
     match composed.language {
         Language::Wesl => {
             let without = lamplight_rules::without_statement_filters(&composed.text);
-            wgsl::parse_str(without.as_deref().unwrap_or(&composed.text))
+            parse_wgsl(without.as_deref().unwrap_or(&composed.text))
                 .map_err(|error| vec![report::wgsl_error(composed, &error)])
         }
         Language::Glsl => {
@@ -196,6 +196,20 @@ fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
         }
     }
 }
+
+/// Parses WGSL. Where naga cannot compute a function of constants, its value is put into the text.
+fn parse_wgsl(text: &str) -> Result<naga::Module, wgsl::ParseError> {
+    wgsl::parse_str(text).or_else(|error| {
+        let is_not_computed = error.message().starts_with(NOT_COMPUTED);
+        match is_not_computed.then(|| lamplight_rules::fold(text)).flatten() {
+            Some(folded) => wgsl::parse_str(&folded),
+            None => Err(error),
+        }
+    })
+}
+
+/// How naga's error about a constant begins that it could compute one day.
+const NOT_COMPUTED: &str = "Not implemented as constant expression";
 
 /// Whether no type or value of a module is too large to be written out.
 pub fn is_bounded(module: &naga::Module) -> bool {

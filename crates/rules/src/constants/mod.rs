@@ -1,0 +1,147 @@
+//! Built-in functions with constant arguments: those that have no value, and those that naga does
+//! not compute.
+
+mod builtin;
+mod evaluate;
+mod fold;
+mod value;
+
+pub use fold::fold;
+
+use super::names::{Module, is_of_subgroups};
+use super::syntax::{ExprId, ExprKind, Tree};
+use super::{Problem, Rule};
+use evaluate::Constants;
+use value::{Kind, Value};
+
+pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    let constants = Constants::of(module);
+    let has_subgroups = tree.enabled.contains(&"subgroups");
+    for expression in &tree.expressions {
+        let ExprKind::Call { callee, template: _, arguments } = &expression.kind else { continue };
+        if module.find(callee).is_some() {
+            continue;
+        }
+        if is_of_subgroups(callee) && !has_subgroups {
+            let message = format!("`{callee}` needs `enable subgroups;`");
+            problems.push(Problem::new(Rule::Grammar, expression.place, message));
+        }
+        if let Some(message) = wrong_call(&constants, callee, arguments) {
+            problems.push(Problem::new(Rule::Constant, expression.place, message));
+        }
+    }
+    problems
+}
+
+/// A whole number without a suffix where it becomes an `i32` that it does not fit.
+pub fn check_untyped(tree: &Tree<'_>, id: ExprId) -> Option<Problem> {
+    let ExprKind::Literal(text) = tree.kind(tree.inner(id)) else { return None };
+    let is_whole = text.parse::<u64>().is_ok_and(|value| value > i32::MAX as u64);
+    let message = format!("{text} does not fit `i32`, the type that it gets here");
+    is_whole.then(|| Problem::new(Rule::Constant, tree.place(id), message))
+}
+
+/// Why a call of a built-in function has no value.
+fn wrong_call(
+    constants: &Constants<'_, '_, '_>,
+    name: &str,
+    arguments: &[ExprId],
+) -> Option<String> {
+    let value = |at: usize| arguments.get(at).and_then(|id| constants.value(*id));
+    let number = |at: usize| value(at).and_then(|found| found.number());
+    match name {
+        "inverseSqrt" => {
+            let is_wrong = value(0)?.parts.iter().any(|part| *part <= 0.0);
+            is_wrong.then(|| "`inverseSqrt` needs a number above 0".to_owned())
+        }
+        "extractBits" | "insertBits" => {
+            let first = arguments.len().checked_sub(2)?;
+            let is_wrong = number(first)? + number(first + 1)? > 32.0;
+            is_wrong.then(|| format!("offset and count of `{name}` are more than 32 bits"))
+        }
+        "ldexp" => {
+            let most = match constants.kind(*arguments.first()?) {
+                Some(Kind::F16) => 16.0,
+                // A number without a suffix has the range of f64.
+                Some(Kind::AbstractInt | Kind::AbstractFloat) => 1024.0,
+                _ => 128.0,
+            };
+            let is_wrong = value(1)?.parts.iter().any(|part| *part > most);
+            is_wrong.then(|| format!("the exponent of `ldexp` is above {most}"))
+        }
+        "smoothstep" => {
+            let (low, high) = (value(0)?, value(1)?);
+            let is_wrong = low.parts.iter().zip(&high.parts).any(|(low, high)| low == high);
+            is_wrong.then(|| "both edges of `smoothstep` are the same".to_owned())
+        }
+        "fma" | "cross" => overflow(name, &value(0)?, &value(1)?),
+        _ if name.starts_with("texture") => wrong_texture(constants, name, arguments),
+        _ => None,
+    }
+}
+
+/// Why a product in `fma` or `cross` is out of the range of its type.
+fn overflow(name: &str, left: &Value, right: &Value) -> Option<String> {
+    let kind = left.kind.common(right.kind)?;
+    let products = left.parts.iter().enumerate().flat_map(|(at, left)| {
+        let others = right.parts.iter().enumerate();
+        others
+            .filter(move |(other, _)| (at == *other) == (name == "fma"))
+            .map(move |(_, right)| left * right)
+    });
+    let is_wrong = products.map(|product| kind.round(product)).any(|product| product.is_none());
+    is_wrong.then(|| format!("a product in `{name}` is out of range"))
+}
+
+/// Why a texture of this kind cannot be read so.
+fn wrong_texture(
+    constants: &Constants<'_, '_, '_>,
+    name: &str,
+    arguments: &[ExprId],
+) -> Option<String> {
+    let module = constants.module;
+    let at = usize::from(component(constants, name, arguments).is_some());
+    let of_type = module.declared_type(*arguments.get(at)?);
+    let kind = of_type.and_then(|id| module.type_of(id)).map_or("", |(kind, _)| kind);
+    if at == 1 && kind.starts_with("texture_depth_") {
+        return Some("a depth texture has no component to choose".to_owned());
+    }
+    let offset = offset_values(constants, name, kind, arguments)?;
+    if kind.contains("_cube") && offset.len() > 1 {
+        return Some("cube textures are sampled without an offset".to_owned());
+    }
+    let is_wrong = offset.len() > 1 && offset.iter().any(|value| !(-8.0..=7.0).contains(value));
+    is_wrong.then(|| "an offset of texels must be in -8..=7".to_owned())
+}
+
+/// The component that `textureGather` of colours has before the texture.
+fn component(constants: &Constants<'_, '_, '_>, name: &str, arguments: &[ExprId]) -> Option<f64> {
+    let first = arguments.first().filter(|_| name == "textureGather")?;
+    constants.value(*first)?.number()
+}
+
+/// The offset of texels, where the last argument is one.
+fn offset_values(
+    constants: &Constants<'_, '_, '_>,
+    name: &str,
+    kind: &str,
+    arguments: &[ExprId],
+) -> Option<Vec<f64>> {
+    let first = match name {
+        "textureSample"
+        | "textureSampleBias"
+        | "textureSampleCompare"
+        | "textureGather"
+        | "textureSampleCompareLevel"
+        | "textureSampleLevel"
+        | "textureGatherCompare" => 3,
+        // Two gradients stand before, and the layer of an array.
+        "textureSampleGrad" if kind.is_empty() => 6,
+        "textureSampleGrad" => 5 + usize::from(kind.contains("_array")),
+        _ => return None,
+    };
+    let first = first + usize::from(component(constants, name, arguments).is_some());
+    let last = arguments.len().checked_sub(1).filter(|last| *last >= first)?;
+    Some(constants.value(arguments[last])?.parts)
+}
