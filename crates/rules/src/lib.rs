@@ -95,11 +95,16 @@ pub fn summarise<'s>(
     (own.without_places(), problems.is_empty())
 }
 
-/// The text with blanks for the filters at its statements, which naga cannot read; `None` where it
-/// has none. It needs a large stack.
-pub fn without_statement_filters(text: &str) -> Option<String> {
+/// A feature of the language that naga does not know, and that is there all the same: pointers are
+/// placed before naga sees them.
+const PLACED_POINTERS: &str = "unrestricted_pointer_parameters";
+
+/// The text with blanks for what naga cannot read, the filters at statements and some requirements;
+/// `None` where it has neither. It needs a large stack.
+pub fn without_unread(text: &str) -> Option<String> {
     // Blanks and comments may stand between the two.
-    if !(text.contains('@') && text.contains("diagnostic")) {
+    let has_filters = text.contains('@') && text.contains("diagnostic");
+    if !has_filters && !text.contains(PLACED_POINTERS) {
         return None;
     }
     let (tree, _) = parse::parse(text)?.ok()?;
@@ -107,7 +112,19 @@ pub fn without_statement_filters(text: &str) -> Option<String> {
     for place in &tree.statement_filters {
         blank.replace_range(place.range(), &" ".repeat(place.range().len()));
     }
-    (!tree.statement_filters.is_empty()).then_some(blank)
+    for (place, names) in &tree.requirements {
+        let kept: Vec<&str> =
+            names.iter().copied().filter(|name| *name != PLACED_POINTERS).collect();
+        let directive = match kept.as_slice() {
+            [] => String::new(),
+            names => format!("requires {};", names.join(", ")),
+        };
+        let width = place.range().len();
+        if kept.len() < names.len() && directive.len() <= width {
+            blank.replace_range(place.range(), &format!("{directive:width$}"));
+        }
+    }
+    (blank != text).then_some(blank)
 }
 
 /// The problems of a text, and what is known of its functions.

@@ -10,8 +10,19 @@ pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
     let mut problems = Vec::new();
     for declaration in &tree.declarations {
         check_variable(module, declaration, &mut problems);
+        check_words(module, &declaration.template, &mut problems);
     }
     for expression in &tree.expressions {
+        match &expression.kind {
+            ExprKind::Name { name: "ptr", template, local: _ } => {
+                let words = template.iter().copied().step_by(2).collect::<Vec<ExprId>>();
+                check_words(module, &words, &mut problems);
+            }
+            ExprKind::Name { name, template, local: _ } if name.starts_with("texture_storage_") => {
+                check_words(module, template, &mut problems);
+            }
+            _ => {}
+        }
         if let ExprKind::Name { name: "ptr", template, local: _ } = &expression.kind {
             check_pointer(module, template, expression.place, &mut problems);
         }
@@ -25,6 +36,19 @@ pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
     }
     check_stages(tree, module, &mut problems);
     problems
+}
+
+/// Address spaces, access modes and formats that are names of the module here.
+fn check_words(module: &Module<'_, '_>, words: &[ExprId], problems: &mut Vec<Problem>) {
+    for id in words {
+        let ExprKind::Name { name, template: _, local: _ } = module.tree.kind(*id) else {
+            continue;
+        };
+        if module.find(name).is_some() {
+            let message = format!("`{name}` is a declaration of the module here");
+            problems.push(Problem::new(Rule::Memory, module.tree.place(*id), message));
+        }
+    }
 }
 
 fn check_variable(

@@ -225,6 +225,8 @@ pub struct Tree<'t> {
     /// `@diagnostic(...)` at statements.
     pub statement_filters: Vec<Place>,
     pub enabled: Vec<&'t str>,
+    /// `requires ...;`, with the names.
+    pub requirements: Vec<(Place, Vec<&'t str>)>,
     pub functions: Vec<Function<'t>>,
     pub structs: Vec<Struct<'t>>,
     pub aliases: Vec<Alias<'t>>,

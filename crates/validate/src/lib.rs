@@ -14,6 +14,7 @@ mod hints;
 mod limits;
 mod loops;
 mod operands;
+mod pointers;
 mod report;
 mod sandbox;
 mod sizes;
@@ -41,6 +42,8 @@ pub use words::NOT_EVERY;
 
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationError, ValidationFlags, Validator};
+
+use pointers::PlacedPointers;
 
 use lamplight_bundle::{Language, Stage};
 use lamplight_compose::Composed;
@@ -177,7 +180,7 @@ pub fn is_small(composed: &Composed) -> Result<bool, Diagnostic> {
 fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
     match composed.language {
         Language::Wesl => {
-            let without = lamplight_rules::without_statement_filters(&composed.text);
+            let without = lamplight_rules::without_unread(&composed.text);
             parse_wgsl(without.as_deref().unwrap_or(&composed.text))
                 .map_err(|error| vec![report::wgsl_error(composed, &error)])
         }
@@ -228,6 +231,17 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
     if let Some(name) = compute_with_inputs(&module) {
         return Err(vec![inputs_of_compute(composed, name)]);
     }
+    // A pointer that is placed no longer shows what else leads there.
+    let original = match pointers::placed_pointers(&module) {
+        None => None,
+        Some(PlacedPointers { module: placed, uncalled }) => {
+            if let Some(uncalled) = &uncalled {
+                info_for_some(uncalled)
+                    .map_err(|error| vec![report::validation_error(composed, uncalled, &error)])?;
+            }
+            Some(std::mem::replace(&mut module, placed))
+        }
+    };
     store_loop_values(&mut module).map_err(|span| vec![not_carried(composed, span)])?;
     let portable = info_of(&module);
     let is_portable = portable.is_ok();
@@ -241,7 +255,8 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
     if composed.language == Language::Glsl {
         check_switches(composed, &module, &info)?;
     }
-    alias::refuse_aliases(composed, &module).map_err(|error| vec![error])?;
+    alias::refuse_aliases(composed, original.as_ref().unwrap_or(&module))
+        .map_err(|error| vec![error])?;
     Ok(Validated { language: composed.language, module, info, portable: is_portable })
 }
 

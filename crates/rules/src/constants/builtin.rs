@@ -4,6 +4,7 @@
 
 use half::f16;
 
+use super::LARGEST_F16;
 use super::value::{Kind, Shape, Value};
 
 /// `-`, `!` and `~`.
@@ -168,7 +169,7 @@ fn of_one(name: &str) -> Option<fn(f64) -> Option<f64>> {
         "inverseSqrt" => |x| (x > 0.0).then(|| 1.0 / x.sqrt()),
         "log" => |x| (x > 0.0).then(|| x.ln()),
         "log2" => |x| (x > 0.0).then(|| x.log2()),
-        "quantizeToF16" => |x| Kind::F16.round(x),
+        "quantizeToF16" => |x| (x.abs() <= LARGEST_F16).then(|| Kind::F16.round(x)).flatten(),
         "radians" => |x| Some(x.to_radians()),
         "round" => |x| Some(x.round_ties_even()),
         "saturate" => |x| Some(x.clamp(0.0, 1.0)),
@@ -234,8 +235,10 @@ fn common<const COUNT: usize>(values: &[Value]) -> Option<[Value; COUNT]> {
     values?.try_into().ok()
 }
 
-fn dot(left: &Value, right: &Value) -> f64 {
-    left.parts.iter().zip(&right.parts).map(|(left, right)| left * right).sum()
+/// The sum of products, each of which is of the kind, as each sum is.
+fn dot(left: &Value, right: &Value) -> Option<f64> {
+    let mut pairs = left.parts.iter().zip(&right.parts);
+    pairs.try_fold(0.0, |sum, (one, other)| left.kind.round(sum + left.kind.round(one * other)?))
 }
 
 fn geometry(name: &str, values: &[Value]) -> Option<Value> {
@@ -254,14 +257,14 @@ fn geometry(name: &str, values: &[Value]) -> Option<Value> {
         Value::new(kind, shape, &parts)
     };
     match (name, values.as_slice()) {
-        ("dot", [one, other]) => Value::scalar(kind, dot(one, other)),
-        ("length", [one]) => Value::scalar(kind, dot(one, one).sqrt()),
+        ("dot", [one, other]) => Value::scalar(kind, dot(one, other)?),
+        ("length", [one]) => Value::scalar(kind, dot(one, one)?.sqrt()),
         ("distance", [one, other]) => {
             let difference = of_parts(&|at| one.parts[at] - other.parts[at])?;
-            Value::scalar(kind, dot(&difference, &difference).sqrt())
+            Value::scalar(kind, dot(&difference, &difference)?.sqrt())
         }
         ("normalize", [one]) => {
-            let length = dot(one, one).sqrt();
+            let length = dot(one, one)?.sqrt();
             of_parts(&|at| one.parts[at] / length)
         }
         ("cross", [one, other]) if shape == Shape::Vector(3) => of_parts(&|at| {
@@ -269,16 +272,16 @@ fn geometry(name: &str, values: &[Value]) -> Option<Value> {
             one.parts[next] * other.parts[last] - one.parts[last] * other.parts[next]
         }),
         ("reflect", [ray, normal]) => {
-            let along = dot(normal, ray);
+            let along = dot(normal, ray)?;
             of_parts(&|at| ray.parts[at] - 2.0 * along * normal.parts[at])
         }
         ("faceForward", [one, ray, normal]) => {
-            let sign = if dot(ray, normal) < 0.0 { 1.0 } else { -1.0 };
+            let sign = if dot(ray, normal)? < 0.0 { 1.0 } else { -1.0 };
             of_parts(&|at| sign * one.parts[at])
         }
         ("refract", [ray, normal, ratio]) => {
             let ratio = ratio.number()?;
-            let along = dot(normal, ray);
+            let along = dot(normal, ray)?;
             let rest = 1.0 - ratio * ratio * (1.0 - along * along);
             let part = |at: usize| {
                 ratio * ray.parts[at] - (ratio * along + rest.sqrt()) * normal.parts[at]
@@ -388,9 +391,9 @@ fn packing(name: &str) -> Option<(u32, Kind, fn(f64) -> Option<u32>)> {
         "2x16unorm" => {
             (16, Kind::F32, |x| Some((0.5 + 65535.0 * x.clamp(0.0, 1.0)).floor() as u32))
         }
-        "2x16float" => {
-            (16, Kind::F32, |x| Some(u32::from(f16::from_f64(Kind::F16.round(x)?).to_bits())))
-        }
+        "2x16float" => (16, Kind::F32, |x| {
+            (x.abs() <= LARGEST_F16).then(|| u32::from(f16::from_f64(x).to_bits()))
+        }),
         "4xI8" => (8, Kind::I32, |x| Some(x as i32 as u32)),
         "4xU8" => (8, Kind::U32, |x| Some(x as u32)),
         "4xI8Clamp" => (8, Kind::I32, |x| Some(x.clamp(-128.0, 127.0) as i32 as u32)),

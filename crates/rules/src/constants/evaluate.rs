@@ -31,11 +31,22 @@ impl<'t, 'm, 'a> Constants<'t, 'm, 'a> {
 
     /// The type of the numbers of an expression, if it is constant or the name of a variable.
     pub fn kind(&self, id: ExprId) -> Option<Kind> {
-        if let Some(value) = self.value(id) {
-            return Some(value.kind);
+        self.type_of(id).map(|(kind, _)| kind)
+    }
+
+    /// The type of an expression, if it is constant or the name of a variable.
+    pub fn type_of(&self, id: ExprId) -> Option<(Kind, Shape)> {
+        match self.value(id) {
+            Some(value) => Some((value.kind, value.shape)),
+            None => self.type_at(self.module.declared_type(id)?),
         }
-        let (name, template) = self.module.type_of(self.module.declared_type(id)?)?;
-        self.named_type(name, template)?.0
+    }
+
+    /// A type of numbers that is written out.
+    pub fn type_at(&self, id: ExprId) -> Option<(Kind, Shape)> {
+        let (name, template) = self.module.type_of(id)?;
+        let (kind, shape) = self.named_type(name, template)?;
+        Some((kind?, shape))
     }
 
     fn value_at(&self, id: ExprId, depth: usize) -> Option<Value> {

@@ -12,14 +12,14 @@ use super::names::{Module, is_of_subgroups};
 use super::syntax::{ExprId, ExprKind, Tree};
 use super::{Problem, Rule};
 use evaluate::Constants;
-use value::{Kind, Value};
+use value::{Kind, Shape, Value};
 
 pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
     let mut problems = Vec::new();
     let constants = Constants::of(module);
     let has_subgroups = tree.enabled.contains(&"subgroups");
     for expression in &tree.expressions {
-        let ExprKind::Call { callee, template: _, arguments } = &expression.kind else { continue };
+        let ExprKind::Call { callee, template, arguments } = &expression.kind else { continue };
         if module.find(callee).is_some() {
             continue;
         }
@@ -27,7 +27,11 @@ pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
             let message = format!("`{callee}` needs `enable subgroups;`");
             problems.push(Problem::new(Rule::Grammar, expression.place, message));
         }
-        if let Some(message) = wrong_call(&constants, callee, arguments) {
+        let wrong = match *callee {
+            "bitcast" => wrong_bitcast(&constants, template, arguments),
+            _ => wrong_call(&constants, callee, arguments),
+        };
+        if let Some(message) = wrong {
             problems.push(Problem::new(Rule::Constant, expression.place, message));
         }
     }
@@ -76,9 +80,37 @@ fn wrong_call(
             is_wrong.then(|| "both edges of `smoothstep` are the same".to_owned())
         }
         "fma" | "cross" => overflow(name, &value(0)?, &value(1)?),
+        "quantizeToF16" | "pack2x16float" => {
+            let is_wrong = value(0)?.parts.iter().any(|part| part.abs() > LARGEST_F16);
+            is_wrong.then(|| format!("`{name}` needs numbers of at most {LARGEST_F16}"))
+        }
         _ if name.starts_with("texture") => wrong_texture(constants, name, arguments),
         _ => None,
     }
+}
+
+/// The largest number of `f16`.
+pub const LARGEST_F16: f64 = 65504.0;
+
+/// Why the bits of an expression cannot be taken for those of a type: the types, where they are known
+/// here, have other sizes, or no bits.
+fn wrong_bitcast(
+    constants: &Constants<'_, '_, '_>,
+    template: &[ExprId],
+    arguments: &[ExprId],
+) -> Option<String> {
+    let ([into], [from]) = (template, arguments) else { return None };
+    let into = constants.type_at(*into)?;
+    if into.0 == Kind::Bool {
+        return Some("`bool` has no bits for `bitcast`".to_owned());
+    }
+    let from = constants.type_of(*from)?;
+    let bits = |(kind, shape): (Kind, Shape)| match kind {
+        Kind::F16 => 16 * shape.count(),
+        _ => 32 * shape.count(),
+    };
+    (bits(into) != bits(from))
+        .then(|| format!("`bitcast` of {} bits into {}", bits(from), bits(into)))
 }
 
 /// Why a product in `fma` or `cross` is out of the range of its type.
@@ -104,6 +136,9 @@ fn wrong_texture(
     let at = usize::from(component(constants, name, arguments).is_some());
     let of_type = module.declared_type(*arguments.get(at)?);
     let kind = of_type.and_then(|id| module.type_of(id)).map_or("", |(kind, _)| kind);
+    if name == "textureSampleGrad" && kind.starts_with("texture_depth_") {
+        return Some("a depth texture is not sampled with gradients".to_owned());
+    }
     if at == 1 && kind.starts_with("texture_depth_") {
         return Some("a depth texture has no component to choose".to_owned());
     }

@@ -1,6 +1,7 @@
 //! Declarations of a module, and the directives before them.
 
 use super::{Kind, Parsed, Parser};
+use crate::Place;
 use crate::syntax::{
     Alias, Attribute, DeclarationKind, Filter, Function, Local, LocalId, Member, Struct,
 };
@@ -25,18 +26,15 @@ impl<'t> Parser<'t> {
     fn directives(&mut self) -> Parsed<()> {
         loop {
             match self.token().text {
-                "enable" | "requires" => {
-                    let is_enable = self.next().text == "enable";
-                    while self.token().kind == Kind::Word {
-                        let name = self.word()?;
-                        if is_enable {
-                            self.tree.enabled.push(name);
-                        }
-                        if !self.take(",") {
-                            break;
-                        }
-                    }
-                    self.expect(";")?;
+                "enable" => {
+                    let names = self.extensions()?;
+                    self.tree.enabled.extend(names);
+                }
+                "requires" => {
+                    let start = self.token().place.start;
+                    let names = self.extensions()?;
+                    let place = Place { start, end: self.end() };
+                    self.tree.requirements.push((place, names));
                 }
                 "diagnostic" => {
                     self.next();
@@ -47,6 +45,20 @@ impl<'t> Parser<'t> {
                 _ => return Ok(()),
             }
         }
+    }
+
+    /// The names of a directive, up to its end.
+    fn extensions(&mut self) -> Parsed<Vec<&'t str>> {
+        self.next();
+        let mut names = Vec::new();
+        while self.token().kind == Kind::Word {
+            names.push(self.word()?);
+            if !self.take(",") {
+                break;
+            }
+        }
+        self.expect(";")?;
+        Ok(names)
     }
 
     fn item(&mut self, attributes: Vec<Attribute<'t>>, filters: Vec<Filter>) -> Parsed<()> {

@@ -21,7 +21,7 @@ pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> 
             "the result has a type that no function can return".to_owned()
         }
         FunctionError::InvalidArgumentPointerSpace { name, .. } => {
-            format!("`{name}` is a pointer that no function can take: only `ptr<function>` can")
+            format!("what a call passes for the pointer `{name}` has another type")
         }
         FunctionError::BreakOutsideOfLoopOrSwitch => {
             "`break` is outside of a loop or `switch`".to_owned()
