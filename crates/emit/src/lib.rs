@@ -13,6 +13,7 @@
 pub mod clip;
 mod columns;
 mod descriptors;
+mod extensions;
 mod filters;
 pub mod glsl;
 mod gradients;

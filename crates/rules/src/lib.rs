@@ -17,6 +17,7 @@ mod uniformity;
 use std::ops::Range;
 
 pub use constants::fold;
+use syntax::Directive;
 pub use syntax::Severity;
 pub use uniformity::Summary;
 
@@ -95,16 +96,17 @@ pub fn summarise<'s>(
     (own.without_places(), problems.is_empty())
 }
 
-/// A feature of the language that naga does not know, and that is there all the same: pointers are
-/// placed before naga sees them.
-const PLACED_POINTERS: &str = "unrestricted_pointer_parameters";
+/// Directives with an extension that naga does not know, although what it allows is there: pointers
+/// are placed before naga sees them, and naga has subgroups at all times.
+const UNREAD: [(&str, &str); 2] =
+    [("requires", "unrestricted_pointer_parameters"), ("enable", "subgroups")];
 
-/// The text with blanks for what naga cannot read, the filters at statements and some requirements;
+/// The text with blanks for what naga cannot read, the filters at statements and some directives;
 /// `None` where it has neither. It needs a large stack.
 pub fn without_unread(text: &str) -> Option<String> {
     // Blanks and comments may stand between the two.
     let has_filters = text.contains('@') && text.contains("diagnostic");
-    if !has_filters && !text.contains(PLACED_POINTERS) {
+    if !has_filters && !UNREAD.iter().any(|(_, name)| text.contains(name)) {
         return None;
     }
     let (tree, _) = parse::parse(text)?.ok()?;
@@ -112,12 +114,12 @@ pub fn without_unread(text: &str) -> Option<String> {
     for place in &tree.statement_filters {
         blank.replace_range(place.range(), &" ".repeat(place.range().len()));
     }
-    for (place, names) in &tree.requirements {
-        let kept: Vec<&str> =
-            names.iter().copied().filter(|name| *name != PLACED_POINTERS).collect();
+    for Directive { word, place, names } in &tree.extensions {
+        let is_read = |name: &&str| !UNREAD.contains(&(*word, *name));
+        let kept: Vec<&str> = names.iter().copied().filter(is_read).collect();
         let directive = match kept.as_slice() {
             [] => String::new(),
-            names => format!("requires {};", names.join(", ")),
+            names => format!("{word} {};", names.join(", ")),
         };
         let width = place.range().len();
         if kept.len() < names.len() && directive.len() <= width {

@@ -217,6 +217,14 @@ pub struct Alias<'t> {
     pub of_type: ExprId,
 }
 
+/// `enable` or `requires`, with the names of extensions.
+#[derive(Debug)]
+pub struct Directive<'t> {
+    pub word: &'t str,
+    pub names: Vec<&'t str>,
+    pub place: Place,
+}
+
 /// A text as a tree.
 #[derive(Debug, Default)]
 pub struct Tree<'t> {
@@ -225,8 +233,8 @@ pub struct Tree<'t> {
     /// `@diagnostic(...)` at statements.
     pub statement_filters: Vec<Place>,
     pub enabled: Vec<&'t str>,
-    /// `requires ...;`, with the names.
-    pub requirements: Vec<(Place, Vec<&'t str>)>,
+    /// `enable ...;` and `requires ...;`.
+    pub extensions: Vec<Directive<'t>>,
     pub functions: Vec<Function<'t>>,
     pub structs: Vec<Struct<'t>>,
     pub aliases: Vec<Alias<'t>>,

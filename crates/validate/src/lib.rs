@@ -8,6 +8,7 @@ mod alias;
 mod browsers;
 mod constants;
 mod every;
+mod gathers;
 mod glsl;
 mod guard;
 mod hints;
@@ -77,6 +78,9 @@ pub const SOME_TARGET_HAS: Capabilities = CAPABILITIES
     .union(Capabilities::SHADER_INT64)
     .union(Capabilities::CLIP_DISTANCES)
     .union(Capabilities::DUAL_SOURCE_BLENDING)
+    .union(Capabilities::SUBGROUP)
+    .union(Capabilities::TEXTURE_EXTERNAL)
+    .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS)
     .union(BINDING_ARRAYS);
 
 /// Arrays of textures, samplers and buffers, with any index.
@@ -200,19 +204,14 @@ fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
     }
 }
 
-/// Parses WGSL. Where naga cannot compute a function of constants, its value is put into the text.
+/// Parses WGSL. Some functions of constants naga refuses, with several messages, since it does not
+/// compute them; then their values are put into the text.
 fn parse_wgsl(text: &str) -> Result<naga::Module, wgsl::ParseError> {
-    wgsl::parse_str(text).or_else(|error| {
-        let is_not_computed = error.message().starts_with(NOT_COMPUTED);
-        match is_not_computed.then(|| lamplight_rules::fold(text)).flatten() {
-            Some(folded) => wgsl::parse_str(&folded),
-            None => Err(error),
-        }
+    wgsl::parse_str(text).or_else(|error| match lamplight_rules::fold(text) {
+        Some(folded) => wgsl::parse_str(&folded),
+        None => Err(error),
     })
 }
-
-/// How naga's error about a constant begins that it could compute one day.
-const NOT_COMPUTED: &str = "Not implemented as constant expression";
 
 /// Whether no type or value of a module is too large to be written out.
 pub fn is_bounded(module: &naga::Module) -> bool {
@@ -231,6 +230,7 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
     if let Some(name) = compute_with_inputs(&module) {
         return Err(vec![inputs_of_compute(composed, name)]);
     }
+    gathers::make_invocations_unsigned(&mut module);
     // A pointer that is placed no longer shows what else leads there.
     let original = match pointers::placed_pointers(&module) {
         None => None,

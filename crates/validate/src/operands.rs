@@ -186,7 +186,8 @@ fn change_queried(function: &mut RayQueryFunction, change: Change<'_>) {
     }
 }
 
-fn change_gathered(mode: &mut GatherMode, change: Change<'_>) {
+/// Changes the invocation that values are gathered from.
+pub fn change_gathered(mode: &mut GatherMode, change: Change<'_>) {
     match mode {
         GatherMode::BroadcastFirst | GatherMode::QuadSwap(_) => {}
         GatherMode::Broadcast(lane)

@@ -23,7 +23,8 @@ pub const TARGET: TargetEntry = TargetEntry {
     glsl: Some(VERSION),
     capabilities: Capabilities::FLOAT64
         .union(Capabilities::CLIP_DISTANCES)
-        .union(Capabilities::DUAL_SOURCE_BLENDING),
+        .union(Capabilities::DUAL_SOURCE_BLENDING)
+        .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
     validation: ValidatorRules { validator: "glslang", rules: &["own", "vulkan"] },

@@ -29,7 +29,9 @@ pub const TARGET: TargetEntry = TargetEntry {
     binary: false,
     about: "HLSL, shader model 5.1 (Direct3D 12)",
     glsl: None,
-    capabilities: Capabilities::DUAL_SOURCE_BLENDING.union(TEXTURE_ARRAYS),
+    capabilities: Capabilities::DUAL_SOURCE_BLENDING
+        .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS)
+        .union(TEXTURE_ARRAYS),
     header: &[],
     overrides: Overrides::Macros,
     validation: ValidatorRules { validator: "glslang", rules: &["hlsl"] },

@@ -27,6 +27,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     capabilities: Capabilities::SHADER_FLOAT16
         .union(Capabilities::CLIP_DISTANCES)
         .union(Capabilities::DUAL_SOURCE_BLENDING)
+        .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS)
         .union(BINDING_ARRAYS),
     header: &["#", "using "],
     overrides: Overrides::FunctionConstants,

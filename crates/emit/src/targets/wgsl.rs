@@ -8,7 +8,7 @@ use naga::back::wgsl::{Writer, WriterFlags};
 use crate::slots::{Numbering, native_reflection};
 use crate::text::BoundedText;
 use crate::{
-    EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, filters, specialise,
+    EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, extensions, filters, specialise,
 };
 use lamplight_bundle::{OverrideChoice, Target};
 
@@ -21,7 +21,10 @@ pub const TARGET: TargetEntry = TargetEntry {
     glsl: None,
     capabilities: Capabilities::SHADER_FLOAT16
         .union(Capabilities::CLIP_DISTANCES)
-        .union(Capabilities::DUAL_SOURCE_BLENDING),
+        .union(Capabilities::DUAL_SOURCE_BLENDING)
+        .union(Capabilities::SUBGROUP)
+        .union(Capabilities::TEXTURE_EXTERNAL)
+        .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS),
     header: &["enable ", "requires ", "diagnostic("],
     overrides: Overrides::Kept,
     validation: ValidatorRules { validator: "naga_tint", rules: &[] },
@@ -42,6 +45,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         None => text,
     };
     let text = filters::with_filters(&text, source.module)?;
+    let text = extensions::with_extensions(text, source.module);
     // naga does not return the names that it wrote, and it appends an underscore to names that end
     // with a digit.
     let entry =

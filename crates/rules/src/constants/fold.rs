@@ -44,7 +44,10 @@ const NOT_COMPUTED: &[&str] = &[
 /// these constants leave room: whatever stays keeps its place. `None` where there is none. It needs
 /// a large stack.
 pub fn fold(text: &str) -> Option<String> {
-    let (tree, _) = parse::parse(text)?.ok()?;
+    let (tree, problems) = parse::parse(text)?.ok()?;
+    if !problems.is_empty() {
+        return None;
+    }
     let module = Module::read(&tree);
     let constants = Constants::of(&module);
     let prefix = ["c", "k", "q", "folded_"].into_iter().find(|prefix| is_free(text, prefix))?;
@@ -142,6 +145,7 @@ mod tests {
             "const x = mix(1i, 2i, 3i);",
             "fn mix(a: f32, b: f32, c: f32) -> f32 { return a; } const x = mix(1.0, 2.0, 3.0);",
             "fn f(a: f32) -> f32 { return mix(a, 1.0, 2.0); }",
+            "fn f() -> f32 { let mix = 1.0; return mix(1.0, 2.0, 0.5); }",
             "override a: f32; override b = mix(a, 1.0, 2.0);",
             "const a = mix(b, 1.0, 2.0); const b = mix(a, 1.0, 2.0);",
         ];

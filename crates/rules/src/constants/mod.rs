@@ -80,6 +80,16 @@ fn wrong_call(
             is_wrong.then(|| "both edges of `smoothstep` are the same".to_owned())
         }
         "fma" | "cross" => overflow(name, &value(0)?, &value(1)?),
+        "subgroupShuffleUp" | "subgroupShuffleDown" | "subgroupShuffleXor"
+            if constants.kind(*arguments.get(1)?) == Some(Kind::I32) =>
+        {
+            Some(format!("`{name}` takes an unsigned number"))
+        }
+        _ if name.starts_with("subgroup") || name == "quadBroadcast" => {
+            let most = if name == "quadBroadcast" { 4.0 } else { 128.0 };
+            let is_wrong = !(0.0..most).contains(&number(1)?);
+            is_wrong.then(|| format!("`{name}` takes numbers below {most}"))
+        }
         "quantizeToF16" | "pack2x16float" => {
             let is_wrong = value(0)?.parts.iter().any(|part| part.abs() > LARGEST_F16);
             is_wrong.then(|| format!("`{name}` needs numbers of at most {LARGEST_F16}"))

@@ -197,7 +197,14 @@ impl<'t> Parser<'t> {
         let name = self.word()?;
         let template = self.template()?;
         let kind = match self.is("(") {
-            true => ExprKind::Call { callee: name, template, arguments: self.arguments()? },
+            true => {
+                if self.scope.get(name).is_some_and(|open| !open.is_empty()) {
+                    let place = Place { start, end: start + name.len() as u32 };
+                    let message = format!("`{name}` is no function here");
+                    self.problems.push(Problem::new(Rule::Grammar, place, message));
+                }
+                ExprKind::Call { callee: name, template, arguments: self.arguments()? }
+            }
             false => {
                 let local = self.scope.get(name).and_then(|open| open.last()).copied();
                 ExprKind::Name { name, template, local }

@@ -3,7 +3,7 @@
 use super::{Kind, Parsed, Parser};
 use crate::Place;
 use crate::syntax::{
-    Alias, Attribute, DeclarationKind, Filter, Function, Local, LocalId, Member, Struct,
+    Alias, Attribute, DeclarationKind, Directive, Filter, Function, Local, LocalId, Member, Struct,
 };
 
 impl<'t> Parser<'t> {
@@ -26,16 +26,7 @@ impl<'t> Parser<'t> {
     fn directives(&mut self) -> Parsed<()> {
         loop {
             match self.token().text {
-                "enable" => {
-                    let names = self.extensions()?;
-                    self.tree.enabled.extend(names);
-                }
-                "requires" => {
-                    let start = self.token().place.start;
-                    let names = self.extensions()?;
-                    let place = Place { start, end: self.end() };
-                    self.tree.requirements.push((place, names));
-                }
+                "enable" | "requires" => self.extensions()?,
                 "diagnostic" => {
                     self.next();
                     let filter = self.diagnostic()?;
@@ -47,9 +38,10 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// The names of a directive, up to its end.
-    fn extensions(&mut self) -> Parsed<Vec<&'t str>> {
-        self.next();
+    /// `enable` or `requires`, up to the end.
+    fn extensions(&mut self) -> Parsed<()> {
+        let start = self.token().place.start;
+        let word = self.next().text;
         let mut names = Vec::new();
         while self.token().kind == Kind::Word {
             names.push(self.word()?);
@@ -58,7 +50,12 @@ impl<'t> Parser<'t> {
             }
         }
         self.expect(";")?;
-        Ok(names)
+        if word == "enable" {
+            self.tree.enabled.extend(&names);
+        }
+        let place = Place { start, end: self.end() };
+        self.tree.extensions.push(Directive { word, names, place });
+        Ok(())
     }
 
     fn item(&mut self, attributes: Vec<Attribute<'t>>, filters: Vec<Filter>) -> Parsed<()> {

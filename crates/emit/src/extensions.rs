@@ -1,0 +1,66 @@
+//! `enable` in WGSL, which browsers ask for. naga reads what subgroups allow without it, and does not
+//! write it; and it writes `enable f16;` only where a type of the module is of `f16`.
+
+use naga::{Binding, BuiltIn, Expression, Function, Literal, Module, ScalarKind, TypeInner};
+
+/// Extensions, and whether a module needs them.
+const EXTENSIONS: [(&str, fn(&Module) -> bool); 2] =
+    [("enable subgroups;\n", uses_subgroups), ("enable f16;\n", uses_f16)];
+
+/// The text that naga wrote of a module, with the extensions that the module needs.
+pub fn with_extensions(text: String, module: &Module) -> String {
+    EXTENSIONS.iter().fold(text, |text, (directive, is_used)| {
+        match !text.contains(directive) && is_used(module) {
+            true => format!("{directive}{text}"),
+            false => text,
+        }
+    })
+}
+
+/// Whether a conversion or a number is of `f16`; naga sees types by itself.
+fn uses_f16(module: &Module) -> bool {
+    functions(module).any(|function| {
+        function.expressions.iter().any(|(_, value)| match value {
+            Expression::As { expr: _, kind, convert } => {
+                *kind == ScalarKind::Float && *convert == Some(2)
+            }
+            Expression::Literal(Literal::F16(_)) => true,
+            _ => false,
+        })
+    })
+}
+
+fn functions(module: &Module) -> impl Iterator<Item = &Function> {
+    let points = module.entry_points.iter().map(|point| &point.function);
+    module.functions.iter().map(|(_, function)| function).chain(points)
+}
+
+fn uses_subgroups(module: &Module) -> bool {
+    let is_built_in = |binding: &Option<Binding>| match binding {
+        Some(Binding::BuiltIn(built_in)) => matches!(
+            built_in,
+            BuiltIn::NumSubgroups
+                | BuiltIn::SubgroupId
+                | BuiltIn::SubgroupSize
+                | BuiltIn::SubgroupInvocationId
+        ),
+        Some(Binding::Location { .. }) | None => false,
+    };
+    let has_member = module.types.iter().any(|(_, one)| match &one.inner {
+        TypeInner::Struct { members, span: _ } => {
+            members.iter().any(|member| is_built_in(&member.binding))
+        }
+        _ => false,
+    });
+    let is_used = |function: &Function| {
+        let mut values = function.expressions.iter();
+        function.arguments.iter().any(|argument| is_built_in(&argument.binding))
+            || values.any(|(_, value)| {
+                matches!(
+                    value,
+                    Expression::SubgroupBallotResult | Expression::SubgroupOperationResult { .. }
+                )
+            })
+    };
+    has_member || functions(module).any(is_used)
+}
