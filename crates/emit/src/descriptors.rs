@@ -138,7 +138,7 @@ pub fn with_capabilities(words: &[u32]) -> Vec<u32> {
     for SpirvInstruction { op, words } in instructions(words) {
         if op != op::CAPABILITY && !extended {
             extended = true;
-            out.extend(extension());
+            out.extend(extension(EXTENSION));
         }
         if is_type(op) && !decorated {
             decorated = true;
@@ -146,7 +146,7 @@ pub fn with_capabilities(words: &[u32]) -> Vec<u32> {
                 out.extend([first_word(op::DECORATE, 3), *id, BLOCK]);
             }
         }
-        let is_known = op == op::EXTENSION && words == extension() && needs_extension;
+        let is_known = op == op::EXTENSION && words == extension(EXTENSION) && needs_extension;
         if !is_known {
             out.extend_from_slice(words);
         }
@@ -159,9 +159,10 @@ fn is_type(op: u16) -> bool {
     (19..=39).contains(&op)
 }
 
-fn extension() -> Vec<u32> {
-    let mut bytes = EXTENSION.as_bytes().to_vec();
-    bytes.resize(EXTENSION.len() / 4 * 4 + 4, 0);
+/// `OpExtension`.
+pub fn extension(name: &str) -> Vec<u32> {
+    let mut bytes = name.as_bytes().to_vec();
+    bytes.resize(name.len() / 4 * 4 + 4, 0);
     let text = super::spirv::words(&bytes);
     let mut words = vec![first_word(op::EXTENSION, text.len() + 1)];
     words.extend(text);

@@ -3,8 +3,10 @@
 
 use naga::{Binding, BuiltIn, Expression, Function, Literal, Module, ScalarKind, TypeInner};
 
-/// Extensions, and whether a module needs them.
-const EXTENSIONS: [(&str, fn(&Module) -> bool); 2] =
+/// The directive of an extension, and whether a module needs it.
+type Extension = (&'static str, fn(&Module) -> bool);
+
+const EXTENSIONS: [Extension; 2] =
     [("enable subgroups;\n", uses_subgroups), ("enable f16;\n", uses_f16)];
 
 /// The text that naga wrote of a module, with the extensions that the module needs.

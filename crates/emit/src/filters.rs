@@ -42,11 +42,31 @@ pub fn with_filters(text: &str, module: &Module) -> Result<String, String> {
     }
 }
 
-/// A text that naga wrote, with derivatives allowed in any control flow.
+/// A text that naga wrote, with derivatives allowed in any control flow, whatever its own filters say.
 pub fn without_derivative_rule(text: &str) -> String {
+    let text = without_derivative_filters(text);
     let header = text.split_inclusive('\n').take_while(|line| super::is_header_line(line));
     let (directives, rest) = text.split_at(header.map(str::len).sum());
     format!("{directives}diagnostic(off, derivative_uniformity);\n{rest}")
+}
+
+/// The text without the filters of this rule, which [`with_filters`] has put at the beginnings of
+/// lines.
+fn without_derivative_filters(text: &str) -> String {
+    const RULE: &str = ", derivative_uniformity)";
+    let mut changed = String::with_capacity(text.len());
+    for line in text.split_inclusive('\n') {
+        let mut rest = line;
+        while let Some((filter, behind)) = rest
+            .split_once(RULE)
+            .filter(|(filter, _)| filter.trim_start_matches('@').starts_with("diagnostic("))
+            .filter(|(filter, _)| !filter.contains(')'))
+        {
+            rest = if filter.starts_with('@') { behind.trim_start_matches(' ') } else { "" };
+        }
+        changed.push_str(rest);
+    }
+    changed
 }
 
 fn attributes(module: &Module, function: &Function) -> String {
@@ -84,5 +104,23 @@ fn rule_name(rule: &FilterableTriggeringRule) -> String {
         ) => "derivative_uniformity".to_owned(),
         FilterableTriggeringRule::Unknown(name) => name.to_string(),
         FilterableTriggeringRule::User(names) => names.join("."),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::without_derivative_rule;
+
+    #[test]
+    fn filters_of_the_rule_are_replaced_and_others_stay() {
+        let text = "enable f16;\n\
+            diagnostic(error, derivative_uniformity);\n\
+            diagnostic(warning, subgroup_uniformity);\n\
+            @diagnostic(error, derivative_uniformity) @diagnostic(off, other) fn f() {\n}\n";
+        let expected = "enable f16;\n\
+            diagnostic(warning, subgroup_uniformity);\n\
+            diagnostic(off, derivative_uniformity);\n\
+            @diagnostic(off, other) fn f() {\n}\n";
+        assert_eq!(without_derivative_rule(text), expected);
     }
 }

@@ -2,7 +2,9 @@
 
 use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer, WriterFlags};
 use naga::proc::BoundsCheckPolicies;
+use naga::{Expression, SampleLevel};
 
+use super::invariants;
 use super::lacks::{self, has_since};
 use super::plain::{self, Needs};
 use super::reflect::place_of;
@@ -28,6 +30,8 @@ pub fn write_glsl(
     if let Some(reason) = lacks::first_lack(source.module, version) {
         return Err(reason);
     }
+    let plainer = invariants::without_invariant_inputs(source.module);
+    let source = &EmitSource { module: plainer.as_ref().unwrap_or(source.module), ..*source };
     let plain = plain::with_plain_forms(source.module, source.info, first_needs(version))?;
     let (module, info) =
         plain.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
@@ -58,8 +62,7 @@ pub fn write_glsl(
     )
     .and_then(|mut writer| writer.write());
     let mut info = written.map_err(|error| in_words(&text, &error))?;
-    // naga omits the prefix of this one extension's name, and no driver knows it without.
-    let mut text = with_mask_elements(text.0.replacen("#extension ARB_", "#extension GL_ARB_", 1));
+    let mut text = with_mask_elements(with_known_extensions(text.0, source.module));
     if defined.is_some() {
         text = remainder::with_plain_parameters(text);
     }
@@ -68,6 +71,31 @@ pub fn write_glsl(
     let is_used = text.contains(&format!("uniform uint {FIRST_INSTANCE};"));
     native.first_instance = is_used.then(|| FIRST_INSTANCE.to_owned());
     Ok(Emitted { bytes: text.into_bytes(), native })
+}
+
+/// The text with the extensions that it needs.
+fn with_known_extensions(text: String, module: &naga::Module) -> String {
+    // naga omits the prefix of this one extension's name, and no driver knows it without.
+    let text = text.replacen("#extension ARB_", "#extension GL_ARB_", 1);
+    // Nothing else needs the extension, which naga asks for where it is not sure.
+    match text.contains("textureLod") || compares_with_bias(module) {
+        true => text,
+        false => text.replacen("#extension GL_EXT_texture_shadow_lod : require\n", "", 1),
+    }
+}
+
+/// Whether a comparison has a bias, as those of GLSL may.
+fn compares_with_bias(module: &naga::Module) -> bool {
+    let points = module.entry_points.iter().map(|point| &point.function);
+    let mut functions = module.functions.iter().map(|(_, function)| function).chain(points);
+    functions.any(|function| {
+        function.expressions.iter().any(|(_, value)| {
+            matches!(
+                value,
+                Expression::ImageSample { level: SampleLevel::Bias(_), depth_ref: Some(_), .. }
+            )
+        })
+    })
 }
 
 /// The text with the first element of the masks of samples, which are arrays of signed numbers.

@@ -7,15 +7,16 @@
 
 use naga::back::glsl::Version;
 use naga::{
-    AddressSpace, Binding, BuiltIn, Expression, Function, Handle, ImageClass, ImageQuery,
-    MathFunction, Module, Span, Type, TypeInner, VectorSize,
+    AddressSpace, Binding, Block, BuiltIn, Expression, Function, Handle, ImageClass,
+    ImageDimension, ImageQuery, MathFunction, Module, SampleLevel, Span, Statement, Type,
+    TypeInner, VectorSize,
 };
 
 use super::{columns, strides, targets};
 use lamplight_bundle::{Language, Target};
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
-use lamplight_validate::{CAPABILITIES, NOT_EVERY, Validated, first_use, lacking};
+use lamplight_validate::{CAPABILITIES, NOT_EVERY, Validated, first_use, inner_blocks, lacking};
 
 /// Something that GLSL did not have from the start.
 struct Later {
@@ -66,6 +67,8 @@ const LEVELS: Later = Later::since("`textureQueryLevels`", 430, None);
 const SAMPLES: Later = Later::since("`textureSamples`", 450, None);
 const NESTED: Later = Later::since("array of arrays", 430, Some(310));
 const SAMPLE_ID: Later = Later::since("`gl_SampleID`", 400, Some(320));
+const MULTISAMPLED: Later = Later::since("multisampled textures", 150, Some(310));
+const LAYER_OFFSETS: Later = Later::since("offsets in comparisons of layers", 430, None);
 const SAMPLE_MASK: Later = Later::since("`gl_SampleMask`", 400, Some(320));
 
 /// Functions of WGSL, with what naga writes for them.
@@ -207,7 +210,46 @@ pub fn check_lacks(
             refuse(format!("target `hlsl`: {}", columns::TAKEN), span, "it is taken here");
         }
     }
+    if wanted.contains(&Target::SPIRV) {
+        for span in discards_in_continuing(module) {
+            refuse(format!("target `spirv`: {DISCARD}"), span, "it is in here");
+        }
+    }
     if found.is_empty() { Ok(()) } else { Err(found) }
+}
+
+const DISCARD: &str = "a loop cannot end an invocation in `continuing`: discard in its body";
+
+/// Why SPIR-V cannot express a module.
+pub fn spirv_lack(module: &Module) -> Option<String> {
+    (!discards_in_continuing(module).is_empty()).then(|| DISCARD.to_owned())
+}
+
+/// The places of `continuing` blocks that discard. SPIR-V must get back to the start of the loop from
+/// there.
+fn discards_in_continuing(module: &Module) -> Vec<Span> {
+    fn discards(block: &Block) -> bool {
+        block.iter().any(|statement| {
+            matches!(statement, Statement::Kill)
+                || inner_blocks(statement).into_iter().any(discards)
+        })
+    }
+    fn find(block: &Block, found: &mut Vec<Span>) {
+        for (statement, span) in block.span_iter() {
+            if let Statement::Loop { body: _, continuing, break_if: _ } = statement
+                && discards(continuing)
+            {
+                found.push(*span);
+            }
+            inner_blocks(statement).into_iter().for_each(|inner| find(inner, found));
+        }
+    }
+    let points = module.entry_points.iter().map(|point| &point.function);
+    let mut found = Vec::new();
+    for function in module.functions.iter().map(|(_, function)| function).chain(points) {
+        find(&function.body, &mut found);
+    }
+    found
 }
 
 fn lack_message(target: Target, what: &str) -> String {
@@ -256,7 +298,22 @@ fn lacking_features(
             Some((what, function.expressions.get_span(handle)))
         })
     });
-    later_values(module, version).chain(expressions).chain(arrays_of_arrays(module, version))
+    later_values(module, version)
+        .chain(expressions)
+        .chain(arrays_of_arrays(module, version))
+        .chain(multisampled(module, version))
+}
+
+fn multisampled(module: &Module, version: Version) -> impl Iterator<Item = (&'static str, Span)> {
+    let what = MULTISAMPLED.lacking(version);
+    module.types.iter().filter_map(move |(handle, ty)| match ty.inner {
+        TypeInner::Image {
+            dim: _,
+            arrayed: _,
+            class: ImageClass::Sampled { kind: _, multi: true } | ImageClass::Depth { multi: true },
+        } => what.map(|what| (what, first_use(module, &|ty| ty == handle))),
+        _ => None,
+    })
 }
 
 fn arrays_of_arrays(
@@ -281,16 +338,11 @@ fn later_builtin(
     expression: &Expression,
 ) -> Option<&'static str> {
     match expression {
-        Expression::ImageSample { image, depth_ref: None, .. }
-            if is_depth(module, function, *image) =>
-        {
-            Some(PLAIN_DEPTH)
-        }
+        Expression::ImageSample { .. } => later_sample(module, function, version, expression),
         Expression::Math { fun, .. } => {
             let (_, later) = LATER.iter().find(|(known, _)| known == fun)?;
             later.lacking(version)
         }
-        Expression::ImageSample { gather: Some(_), .. } => GATHER.lacking(version),
         Expression::ImageQuery { query: ImageQuery::NumLevels, .. } => LEVELS.lacking(version),
         Expression::ImageQuery { query: ImageQuery::NumSamples, .. } => SAMPLES.lacking(version),
         Expression::ImageQuery { query: ImageQuery::NumLayers, image }
@@ -302,6 +354,48 @@ fn later_builtin(
     }
 }
 
+/// The name, in GLSL, of a way to sample that a version lacks, or that naga does not write for it.
+fn later_sample(
+    module: &Module,
+    function: &Function,
+    version: Version,
+    expression: &Expression,
+) -> Option<&'static str> {
+    let Expression::ImageSample {
+        image,
+        sampler: _,
+        gather,
+        coordinate: _,
+        array_index: _,
+        offset,
+        level,
+        depth_ref,
+        clamp_to_edge: _,
+    } = expression
+    else {
+        return None;
+    };
+    if depth_ref.is_none() && is_depth(module, function, *image) {
+        return Some(PLAIN_DEPTH);
+    }
+    if gather.is_some()
+        && let Some(lacking) = GATHER.lacking(version)
+    {
+        return Some(lacking);
+    }
+    let (dim, is_array, _) =
+        image_kind(module, function, *image).filter(|_| depth_ref.is_some())?;
+    let is_cube = dim == ImageDimension::Cube;
+    match level {
+        _ if gather.is_some() => (is_array || is_cube).then_some(GATHERED_LAYERS),
+        SampleLevel::Zero | SampleLevel::Exact(_) if is_array && is_cube => Some(CUBE_LEVELS),
+        _ if is_array && offset.is_some() => LAYER_OFFSETS.lacking(version),
+        _ => None,
+    }
+}
+
+const GATHERED_LAYERS: &str = "gathering of comparisons from layers or cubes, as naga writes it";
+const CUBE_LEVELS: &str = "comparison at a given level of an array of cubes";
 const STORAGE_LAYERS: &str = "number of layers of a storage texture, as naga writes it";
 const PLAIN_DEPTH: &str = "depth texture that is sampled without a comparison";
 
@@ -319,13 +413,22 @@ fn image_class(
     function: &Function,
     image: Handle<Expression>,
 ) -> Option<ImageClass> {
+    image_kind(module, function, image).map(|(_, _, class)| class)
+}
+
+/// The dimensions of a texture, whether it has layers, and its class.
+fn image_kind(
+    module: &Module,
+    function: &Function,
+    image: Handle<Expression>,
+) -> Option<(ImageDimension, bool, ImageClass)> {
     let ty = match &function.expressions[image] {
         Expression::GlobalVariable(variable) => module.global_variables[*variable].ty,
         Expression::FunctionArgument(index) => function.arguments[*index as usize].ty,
         _ => return None,
     };
     match module.types[ty].inner {
-        TypeInner::Image { dim: _, arrayed: _, class } => Some(class),
+        TypeInner::Image { dim, arrayed, class } => Some((dim, arrayed, class)),
         _ => None,
     }
 }

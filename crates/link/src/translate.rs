@@ -23,7 +23,7 @@ use lamplight_emit as emit;
 use lamplight_emit::spirv::words;
 use lamplight_validate::{
     Validated, check_switches, guard, info_of, is_bounded, is_small, may_alias, on_large_stack,
-    parse_glsl, store_loop_values,
+    parse_glsl, prepare_part,
 };
 
 /// A unit in every target.
@@ -89,7 +89,7 @@ fn translate_inner(
     if !is_bounded(&module) {
         return Err(Reason::Refused);
     }
-    store_loop_values(&mut module).map_err(|_| Reason::Refused)?;
+    prepare_part(&mut module).then_some(()).ok_or(Reason::Refused)?;
     show_stubs(outline, recipe, &mut module)?;
     call_function(outline, recipe, &mut module)?;
     let info = info_of(&module).map_err(|_| Reason::Refused)?;

@@ -31,7 +31,6 @@ pub use glsl::{check_glsl, check_switches, parse_glsl};
 pub use guard::{catch_panics, guard, on_large_stack};
 pub use hints::glsl_words;
 pub use limits::{LIMITS, NagaLimits};
-pub use loops::store_loop_values;
 pub use operands::{
     change_operands, change_used, inner_blocks, inner_blocks_mut, operands, result_mut,
 };
@@ -218,6 +217,18 @@ pub fn is_bounded(module: &naga::Module) -> bool {
     sizes::check_sizes(module).is_none()
 }
 
+/// Puts into a module what naga needs, for one function at a time: `false` where that is not enough,
+/// and the module must be compiled as a whole.
+pub fn prepare_part(module: &mut naga::Module) -> bool {
+    prepare(module).is_ok() && pointers::placed_pointers(module).is_none()
+}
+
+/// Puts into a module what naga needs to write it rightly.
+fn prepare(module: &mut naga::Module) -> Result<(), naga::Span> {
+    gathers::make_invocations_unsigned(module);
+    loops::store_loop_values(module)
+}
+
 fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Validated, Diagnostics> {
     if let Some(large) = sizes::check_sizes(&module) {
         let error = Diagnostic::error(codes::LIMIT_EXCEEDED, large.message);
@@ -230,7 +241,6 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
     if let Some(name) = compute_with_inputs(&module) {
         return Err(vec![inputs_of_compute(composed, name)]);
     }
-    gathers::make_invocations_unsigned(&mut module);
     // A pointer that is placed no longer shows what else leads there.
     let original = match pointers::placed_pointers(&module) {
         None => None,
@@ -242,7 +252,7 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
             Some(std::mem::replace(&mut module, placed))
         }
     };
-    store_loop_values(&mut module).map_err(|span| vec![not_carried(composed, span)])?;
+    prepare(&mut module).map_err(|span| vec![not_carried(composed, span)])?;
     let portable = info_of(&module);
     let is_portable = portable.is_ok();
     let info = portable

@@ -260,15 +260,7 @@ impl MadeFunctions<'_> {
         let mut new_body = Block::new();
         write_runs(&rewrite.computed, Span::UNDEFINED, &mut new_body);
         new_body.extend_block(rewrite.block(body)?);
-        let mut locals = Arena::new();
-        for (handle, local) in local_variables.iter() {
-            let LocalVariable { name, ty, init } = local.clone();
-            let init = match init {
-                Some(value) => Some(rewrite.value(value)?),
-                None => None,
-            };
-            locals.append(LocalVariable { name, ty, init }, local_variables.get_span(handle));
-        }
+        let locals = rewrite.local_variables()?;
         let mut names = naga::FastIndexMap::default();
         for (value, name) in named_expressions {
             names.insert(rewrite.value(*value)?, name.clone());
@@ -348,6 +340,19 @@ impl FunctionRewrite<'_, '_> {
             }
             self.parameters.push(Parameter::Placed(place.clone(), next));
         }
+    }
+
+    fn local_variables(&self) -> Option<Arena<LocalVariable>> {
+        let mut locals = Arena::new();
+        for (handle, LocalVariable { name, ty, init }) in self.locals.iter() {
+            let init = match init {
+                Some(value) => Some(self.value(*value)?),
+                None => None,
+            };
+            let local = LocalVariable { name: name.clone(), ty: *ty, init };
+            locals.append(local, self.locals.get_span(handle));
+        }
+        Some(locals)
     }
 
     fn value(&self, old: Value) -> Option<Value> {

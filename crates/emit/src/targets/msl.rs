@@ -13,7 +13,7 @@ use naga::back::msl::{
 use crate::names::first_entry_name;
 use crate::slots::{Numbering, UsedBinding, assign_slots, native_reflection};
 use crate::text::BoundedText;
-use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, gradients, rename};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, gradients, invariants, rename};
 use lamplight_validate::BINDING_ARRAYS;
 use lamplight_bundle::{BindingKind, BufferSizes, Target};
 
@@ -41,6 +41,8 @@ pub const TARGET: TargetEntry = TargetEntry {
 const SIZES_BUFFER: u8 = 30;
 
 fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
+    let plainer = invariants::without_invariant_inputs(source.module);
+    let source = &EmitSource { module: plainer.as_ref().unwrap_or(source.module), ..*source };
     let options = Options {
         lang_version: (2, 0),
         per_entry_point_map: BTreeMap::from([(source.entry.to_owned(), entry_resources(source)?)]),

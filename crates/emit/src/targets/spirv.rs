@@ -9,7 +9,7 @@ use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::slots::{Numbering, native_reflection};
 use crate::spirv::{HEADER_WORDS, SpirvInstruction, bytes, instructions, op};
-use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, descriptors, sample_mask};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, descriptors, lacks, sample_mask, short_storage};
 use lamplight_validate::BINDING_ARRAYS;
 use lamplight_bundle::Target;
 
@@ -35,6 +35,9 @@ pub const TARGET: TargetEntry = TargetEntry {
 };
 
 fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
+    if let Some(reason) = lacks::spirv_lack(source.module) {
+        return Err(reason);
+    }
     let options = Options {
         lang_version: (1, 0),
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
@@ -47,7 +50,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let words = write_vec(source.module, source.info, &options, Some(&pipeline))
         .map_err(|error| error.to_string())?;
     let words = sample_mask::with_storage_queries(&order_variables(&words));
-    let words = descriptors::with_capabilities(&words);
+    let words = short_storage::with_extension(descriptors::with_capabilities(&words));
     let bytes = bytes(&sample_mask::as_arrays(&words)?);
     Ok(Emitted { bytes, native: native_reflection(source, source.entry, Numbering::Author) })
 }

@@ -378,8 +378,10 @@ fn bits(name: &str, values: &[Value]) -> Option<Value> {
     }
 }
 
-/// How a function packs numbers into a word: bits of each, and the word of one number.
-fn packing(name: &str) -> Option<(u32, Kind, fn(f64) -> Option<u32>)> {
+/// How a function packs numbers into a word: the bits of each, and the word of one number.
+type Packing = (u32, Kind, fn(f64) -> Option<u32>);
+
+fn packing(name: &str) -> Option<Packing> {
     Some(match name {
         "4x8snorm" => {
             (8, Kind::F32, |x| Some((0.5 + 127.0 * x.clamp(-1.0, 1.0)).floor() as i32 as u32))

@@ -80,15 +80,8 @@ fn wrong_call(
             is_wrong.then(|| "both edges of `smoothstep` are the same".to_owned())
         }
         "fma" | "cross" => overflow(name, &value(0)?, &value(1)?),
-        "subgroupShuffleUp" | "subgroupShuffleDown" | "subgroupShuffleXor"
-            if constants.kind(*arguments.get(1)?) == Some(Kind::I32) =>
-        {
-            Some(format!("`{name}` takes an unsigned number"))
-        }
         _ if name.starts_with("subgroup") || name == "quadBroadcast" => {
-            let most = if name == "quadBroadcast" { 4.0 } else { 128.0 };
-            let is_wrong = !(0.0..most).contains(&number(1)?);
-            is_wrong.then(|| format!("`{name}` takes numbers below {most}"))
+            wrong_invocation(constants, name, *arguments.get(1)?)
         }
         "quantizeToF16" | "pack2x16float" => {
             let is_wrong = value(0)?.parts.iter().any(|part| part.abs() > LARGEST_F16);
@@ -121,6 +114,22 @@ fn wrong_bitcast(
     };
     (bits(into) != bits(from))
         .then(|| format!("`bitcast` of {} bits into {}", bits(from), bits(into)))
+}
+
+/// Why invocations cannot be chosen by this number.
+fn wrong_invocation(
+    constants: &Constants<'_, '_, '_>,
+    name: &str,
+    number: ExprId,
+) -> Option<String> {
+    let is_relative =
+        matches!(name, "subgroupShuffleUp" | "subgroupShuffleDown" | "subgroupShuffleXor");
+    if is_relative && constants.kind(number) == Some(Kind::I32) {
+        return Some(format!("`{name}` takes an unsigned number"));
+    }
+    let most = if name == "quadBroadcast" { 4.0 } else { 128.0 };
+    let is_wrong = !(0.0..most).contains(&constants.value(number)?.number()?);
+    is_wrong.then(|| format!("`{name}` takes numbers below {most}"))
 }
 
 /// Why a product in `fma` or `cross` is out of the range of its type.
