@@ -108,7 +108,8 @@ fn for_each_output(bundle: &Bundle, check: &dyn Fn(&str, Target, &Found) -> Outc
 
 /// Whether naga reads in a text what its reflection says.
 fn same_reflection(text: &str, found: &Found) -> Result<(), String> {
-    let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
+    let module =
+        lamplight_validate::parse_wgsl(text).map_err(|error| error.emit_to_string(text))?;
     let [point] = module.entry_points.as_slice() else {
         return Err(format!("expected one entry point, found {}", module.entry_points.len()));
     };

@@ -129,6 +129,28 @@ pub fn without_unread(text: &str) -> Option<String> {
     (blank != text).then_some(blank)
 }
 
+/// The places of what a text is made of.
+#[derive(Debug, Default)]
+pub struct Parts {
+    /// The statements of each function, without those within them.
+    pub statements: Vec<Vec<Place>>,
+    /// The values of the constants and variables of the module.
+    pub values: Vec<Place>,
+}
+
+/// The places of what a text is made of; `None` where it is no WGSL. It needs a large stack.
+pub fn parts(text: &str) -> Option<Parts> {
+    let (tree, _) = parse::parse(text)?.ok()?;
+    let statements = |function: &syntax::Function<'_>| {
+        function.body.statements.iter().map(|statement| statement.place).collect()
+    };
+    let values = tree.declarations.iter().filter_map(|one| one.value);
+    Some(Parts {
+        statements: tree.functions.iter().map(statements).collect(),
+        values: values.map(|id| tree.place(id)).collect(),
+    })
+}
+
 /// The problems of a text, and what is known of its functions.
 fn check_with<'s>(
     text: &str,

@@ -13,6 +13,7 @@ mod glsl;
 mod guard;
 mod hints;
 mod limits;
+mod locate;
 mod loops;
 mod operands;
 mod pointers;
@@ -183,9 +184,7 @@ pub fn is_small(composed: &Composed) -> Result<bool, Diagnostic> {
 fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
     match composed.language {
         Language::Wesl => {
-            let without = lamplight_rules::without_unread(&composed.text);
-            parse_wgsl(without.as_deref().unwrap_or(&composed.text))
-                .map_err(|error| vec![report::wgsl_error(composed, &error)])
+            parse_wgsl(&composed.text).map_err(|error| vec![report::wgsl_error(composed, &error)])
         }
         Language::Glsl => {
             let stage = composed.stage.ok_or_else(|| {
@@ -205,7 +204,12 @@ fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
 
 /// Parses WGSL. Some functions of constants naga refuses, with several messages, since it does not
 /// compute them; then their values are put into the text.
-fn parse_wgsl(text: &str) -> Result<naga::Module, wgsl::ParseError> {
+///
+/// # Errors
+/// Those of naga, with the places of the text.
+pub fn parse_wgsl(text: &str) -> Result<naga::Module, wgsl::ParseError> {
+    let read = lamplight_rules::without_unread(text);
+    let text = read.as_deref().unwrap_or(text);
     wgsl::parse_str(text).or_else(|error| match lamplight_rules::fold(text) {
         Some(folded) => wgsl::parse_str(&folded),
         None => Err(error),

@@ -7,7 +7,8 @@ use naga::front::glsl::ErrorKind;
 use naga::front::{glsl, wgsl};
 use naga::valid::ValidationError;
 
-use super::{hints, uses, words};
+use super::locate::place_of_error;
+use super::{hints, parse_wgsl, uses, words};
 use lamplight_bundle::Language;
 use lamplight_compose::{Composed, Part};
 use lamplight_diagnostic::source::Span;
@@ -17,10 +18,21 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 ///
 /// naga does not publish the kinds of these errors, so its sentences are used, in our style.
 pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
-    let message = as_sentence(error.message());
+    let message = match error.message() {
+        // What follows are types as naga writes them for its developers.
+        message if message.starts_with(OPERANDS) => "these operands do not go together".to_owned(),
+        message => as_sentence(message),
+    };
     let mut diagnostic = Diagnostic::error(codes::WGSL_ERROR, &*message);
     for (span, label) in error.labels() {
         diagnostic = label_or_note(diagnostic, composed, span.to_range(), &as_sentence(label));
+    }
+    if diagnostic.labels.is_empty() {
+        let message = |text: &str| Some(parse_wgsl(text).err()?.message().to_owned());
+        let range = place_of_error(&composed.text, &message);
+        let known = range.is_some();
+        diagnostic =
+            label_or_note(diagnostic, composed, range, if known { "in this part" } else { "here" });
     }
     diagnostic =
         error.notes().fold(diagnostic, |diagnostic, note| diagnostic.note(as_sentence(note)));
@@ -29,6 +41,8 @@ pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
         None => diagnostic,
     }
 }
+
+const OPERANDS: &str = "Incompatible operands";
 
 /// How naga's sentences begin before a name that nothing declares.
 const UNKNOWN: &[&str] =

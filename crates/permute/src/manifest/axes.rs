@@ -55,7 +55,7 @@ fn read_axis(reader: &mut ManifestReader, name: &TomlName, value: &TomlValue) ->
     let name = name.get_ref().to_string();
     let what = format!("axis `{name}`");
     reader.problems.extend(names::check_axis(&name, span));
-    let table = reader.table(value, &what)?;
+    let table = reader.axis_table(value, &what)?;
     reader.check_keys(table, AXIS_KEYS, &what);
     let mode = table.get("mode").map_or(Some(Mode::Static), |value| read_mode(reader, value));
     let doc = reader.doc(table);

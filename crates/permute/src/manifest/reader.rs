@@ -117,6 +117,23 @@ impl<'s> ManifestReader<'s> {
         self.expect(found, value, what, "an integer of 64 bits")
     }
 
+    /// The table of an axis. A list alone, which other tools take, gets a help.
+    pub fn axis_table<'t, 'v>(
+        &mut self,
+        value: &'v TomlValue<'t>,
+        what: &str,
+    ) -> Option<&'v DeTable<'t>> {
+        let table = self.table(value, what);
+        if value.get_ref().as_array().is_some()
+            && let Some(problem) = self.problems.pop()
+        {
+            let text = &self.sources.get(self.id).text;
+            let list = text.get(value.span()).unwrap_or("[...]");
+            self.problems.push(problem.note(format!("help: write `{{ values = {list} }}`")));
+        }
+        table
+    }
+
     /// A value of an axis.
     pub fn setting(&mut self, value: &TomlValue, what: &str) -> Option<Setting> {
         let found = match value.get_ref() {

@@ -1,7 +1,6 @@
 //! WGSL: naga, which is part of this program, and Tint, the compiler of Chromium and Dawn. There
 //! are no rules.
 
-use naga::front::wgsl;
 
 use crate::tint::TintMistake;
 use crate::{
@@ -9,7 +8,7 @@ use crate::{
     divide_group,
 };
 use lamplight_tools::NODE;
-use lamplight_validate::{guard, info_for_some};
+use lamplight_validate::{guard, info_for_some, parse_wgsl};
 
 /// The validator, for the table of all.
 pub const VALIDATOR: ValidatorEntry = ValidatorEntry {
@@ -51,7 +50,7 @@ fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
     let text = output.text()?;
     let validated = guard(&text, || {
         let at_line = |line: Option<u32>, message: String| (line, message);
-        let module = wgsl::parse_str(&text).map_err(|error| {
+        let module = parse_wgsl(&text).map_err(|error| {
             let line = error.location(&text).map(|place| place.line_number);
             at_line(line, error.emit_to_string(&text))
         })?;

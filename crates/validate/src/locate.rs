@@ -1,0 +1,73 @@
+//! Finds the place of an error that naga reports without one: the first part of the text without
+//! which the error is another one.
+
+use std::ops::Range;
+
+use lamplight_rules::{Place, parts};
+
+/// How many times a text is parsed, and how long it may be for that.
+const MOST_PARTS: usize = 512;
+const LONGEST: usize = 1 << 16;
+
+/// The statement, or the value of a declaration, that gives an error. `message` gives the one of a
+/// text.
+pub fn place_of_error(
+    text: &str,
+    message: &dyn Fn(&str) -> Option<String>,
+) -> Option<Range<usize>> {
+    let parts = parts(text).filter(|_| text.len() <= LONGEST)?;
+    let count = parts.values.len() + parts.statements.iter().map(Vec::len).sum::<usize>();
+    let expected = without_numbers(&message(text).filter(|_| count <= MOST_PARTS)?);
+    let is_same = |text: &str| message(text).is_some_and(|one| without_numbers(&one) == expected);
+    for statements in parts.statements.iter().filter(|one| !one.is_empty()) {
+        if is_same(&blanked(text, statements)) {
+            continue;
+        }
+        // naga reads statements in their order, so the others may go.
+        let first =
+            (1..=statements.len()).find(|kept| is_same(&blanked(text, &statements[*kept..])));
+        return Some(statements[first? - 1].range());
+    }
+    let is_it = |value: &&Place| !is_same(&with_zero(text, **value));
+    parts.values.iter().find(is_it).map(|value| value.range())
+}
+
+/// Handles of naga differ between the texts.
+fn without_numbers(message: &str) -> String {
+    message.chars().filter(|letter| !letter.is_ascii_digit()).collect()
+}
+
+fn blanked(text: &str, places: &[Place]) -> String {
+    let mut blank = text.to_owned();
+    for place in places {
+        let range = place.range();
+        blank.replace_range(range.clone(), &" ".repeat(range.len()));
+    }
+    blank
+}
+
+fn with_zero(text: &str, place: Place) -> String {
+    let range = place.range();
+    let mut changed = text.to_owned();
+    changed.replace_range(range.clone(), &format!("{:<width$}", 0, width = range.len()));
+    changed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::place_of_error;
+
+    /// An error of texts that hold a word, wherever it is.
+    fn place(text: &str) -> Option<&str> {
+        let error = |text: &str| text.contains("wrong").then(|| "error 7".to_owned());
+        place_of_error(text, &error).map(|range| &text[range])
+    }
+
+    #[test]
+    fn the_first_part_that_gives_the_error_is_found() {
+        let text = "fn a() { let x = 1; } fn b() { let y = 2; let z = wrong; let w = wrong; }";
+        assert_eq!(place(text), Some("let z = wrong;"));
+        assert_eq!(place("const a = 1; const b = wrong; fn c() { let x = b; }"), Some("wrong"));
+        assert_eq!(place("fn a() { let x = 1; }"), None);
+    }
+}
