@@ -6,6 +6,7 @@
 
 mod c;
 mod damaged;
+mod javascript;
 mod set;
 mod transcript;
 
@@ -20,6 +21,7 @@ type Outcome = Result<(), Failed>;
 pub fn tests() -> Vec<Trial> {
     let mut tests = vec![Trial::test("readers::set_is_current", set_is_current)];
     tests.extend(c::tests());
+    tests.extend(javascript::tests());
     tests
 }
 

@@ -51,7 +51,7 @@ fn source(name: &str) -> PathBuf {
 }
 
 /// The output of a command that must end well.
-fn output(command: &mut Command) -> Result<String, Failed> {
+pub fn output(command: &mut Command) -> Result<String, Failed> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = command.output().map_err(|error| format!("{program}: {error}"))?;
     if output.status.success() {
@@ -97,12 +97,7 @@ fn says_the_same() -> Outcome {
     let (program, set) = (build("transcript", folder.path())?, set_folder());
     let expected = std::fs::read_to_string(set.join("expected.txt"))?;
     let place = set.to_string_lossy().into_owned();
-    let names: Vec<&str> = expected
-        .lines()
-        .filter(|line| line.starts_with("damaged/"))
-        .filter_map(|line| line.split(' ').next())
-        .collect();
-    let damaged = run(&program, [place.as_str()].into_iter().chain(names))?;
+    let damaged = run(&program, [place.as_str()].into_iter().chain(damaged_names(&expected)))?;
     for form in [&["good"][..], &["good", "directory"]] {
         let good = run(&program, [place.as_str()].into_iter().chain(form.iter().copied()))?;
         same_lines(&expected, &(good + &damaged))?;
@@ -110,7 +105,14 @@ fn says_the_same() -> Outcome {
     Ok(())
 }
 
-fn same_lines(expected: &str, found: &str) -> Outcome {
+/// The damaged files that a transcript names.
+pub fn damaged_names(transcript: &str) -> impl Iterator<Item = &str> {
+    let lines = transcript.lines().filter(|line| line.starts_with("damaged/"));
+    lines.filter_map(|line| line.split(' ').next())
+}
+
+/// Names the first line that differs.
+pub fn same_lines(expected: &str, found: &str) -> Outcome {
     for (number, (expected, found)) in expected.lines().zip(found.lines()).enumerate() {
         if expected != found {
             let line = number + 1;
