@@ -19,6 +19,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use super::directory::{
     BLOBS, BlobFile, INDEX, MANIFEST, MOST_MANIFEST_BYTES, blob_files_of_manifest, read_manifest,
 };
+use super::layout::MAGIC;
 use super::manifest::{self, Before, Manifest, ManifestArtifact};
 use super::pack::{newer_bundle, pack_index};
 use super::staging::add_unit;
@@ -78,6 +79,7 @@ impl DirectoryWriter {
         let turn = output::wait_for_turn(path, turns)?;
         let before = survey_manifest(path, replace)?;
         let is_ours = before.is_some();
+        survey_index(path, replace)?;
         let live = before.unwrap_or_default();
         let retired = read_retired(path, replace)?;
         let blobs = path.join(BLOBS);
@@ -295,6 +297,19 @@ fn survey_manifest(path: &Path, replace: Replace) -> Result<Option<BTreeSet<Stri
         Before::Unreadable | Before::Newer(_) => Ok(Some(BTreeSet::new())),
         Before::Foreign if replace == Replace::Any || text.is_empty() => Ok(None),
         Before::Foreign => Err(Error::Foreign(foreign_file(&place))),
+    }
+}
+
+/// Refuses an index that is a link or no file, and one of somebody else.
+fn survey_index(path: &Path, replace: Replace) -> Result<(), Error> {
+    let place = path.join(INDEX);
+    match read_own(&place)? {
+        Some(bytes)
+            if replace == Replace::Ours && !bytes.is_empty() && !bytes.starts_with(MAGIC) =>
+        {
+            Err(Error::Foreign(foreign_file(&place)))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -192,7 +192,7 @@ fn matrix(columns: u32, rows: u32, stride: u32) -> Shape {
 
 fn unit(name: &str, reflection: Reflection, targets: &[&str]) -> Unit {
     let artifact = |target: &&str| {
-        let extension = if *target == "spirv" { "spv" } else { "txt" };
+        let extension = if *target == "spirv" { "spv.txt" } else { "txt" };
         let artifact = Artifact {
             bytes: shader_text(name, target).into_bytes().into(),
             extension: extension.to_owned(),
