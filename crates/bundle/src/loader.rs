@@ -324,6 +324,11 @@ impl Shader<'_> {
         Ok(keys)
     }
 
+    /// The reflection of a key's shader, without reading its bytes.
+    pub fn reflection(&self, key: &str) -> Result<Arc<Reflection>, Error> {
+        Ok(self.store.unit(self.find(key)?)?.reflection)
+    }
+
     /// Names of the targets that a key was compiled for, sorted.
     pub fn targets(&self, key: &str) -> Result<Vec<String>, Error> {
         Ok(self.store.unit(self.find(key)?)?.targets.into_keys().collect())

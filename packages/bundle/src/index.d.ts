@@ -186,12 +186,12 @@ export function constantChoices(shader: Shader): ConstantChoice[];
 /** The value of a constant as a number: 0 and 1 for truth values. */
 export function constantNumber(constant: Constant): number;
 
-export type BlockValue =
-  | number | ArrayLike<number> | { [member: string]: BlockValue } | { [member: string]: BlockValue }[];
+export type BlockValue = number | ArrayLike<number> | BlockRecord | BlockRecord[];
+export type BlockRecord = { [member: string]: BlockValue | undefined };
 
 /**
  * The bytes of a uniform buffer. `binding` is one of a layout or a reflection; `values` has a number
  * or a list of numbers for each member, a record for a struct, and a list of records for an array of
  * structs. Matrices are lists of columns without padding. What is left out is 0.
  */
-export function packBlock(binding: Binding, values: { [member: string]: BlockValue }): ArrayBuffer;
+export function packBlock(binding: Binding, values: BlockRecord): ArrayBuffer;
