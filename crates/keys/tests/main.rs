@@ -1,5 +1,7 @@
 //! The package's tests.
 
+#![allow(clippy::print_stdout)]
+
 mod bindings;
 mod identifiers;
 
