@@ -91,6 +91,7 @@ typedef struct lamplight_shader {
     lamplight_value reflection;        /* what every target has */
     lamplight_value native;            /* names and numbers of this target */
     lamplight_value constants;         /* values of overrides that the key chooses */
+    lamplight_value layout;            /* as lamplight_layout, for the language of the shader */
     uint32_t unit;                     /* equal numbers are equal shaders */
     uint32_t size;                     /* bytes of the output */
     uint32_t group, group_size, offset;
@@ -156,6 +157,10 @@ lamplight_value lamplight_bindings(const lamplight_shader *shader);
 
 /* The binding of that number in a list. Returns 0 where the list has no more. */
 int lamplight_binding_at(lamplight_value list, uint32_t index, lamplight_binding *binding);
+
+/* The number of a binding in a list, among those of its kind: for APIs that number blocks by
+ * themselves. With the `layout` of a shader, it is the same in all shaders of the program. */
+uint32_t lamplight_index_of(lamplight_value list, const lamplight_binding *binding);
 
 /* The slot that the target has for a binding: an item of `slots` of its native part, or null. */
 lamplight_value lamplight_slot(const lamplight_shader *shader, uint32_t group, uint32_t binding);
@@ -403,7 +408,7 @@ static lamplight_value lamplight__child(lamplight_value parent, const uint8_t *w
 lamplight_value lamplight_field(lamplight_value record, const char *name) {
     uint32_t count, i;
     const uint8_t *words = lamplight__node(record, LAMPLIGHT__RECORD, 2, &count);
-    for (i = 0; i < count; i++) {
+    for (i = 0; name && i < count; i++) {
         const uint8_t *pair = words + 8 * (size_t)i;
         const char *found = lamplight__tree_text(record.tree, lamplight__u32(pair));
         if (found && strcmp(found, name) == 0) return lamplight__child(record, pair + 4);
@@ -937,6 +942,8 @@ int lamplight_find_in(lamplight *bundle, const char *program, const char *langua
                                  (uint64_t)set.constants + (uint64_t)index * 4, &ok);
     if (!ok) return lamplight__damaged(bundle, "a key is outside of its section");
     code = lamplight__unit(bundle, unit, target, shader);
+    shader->layout = lamplight_field(lamplight_field(found, "layouts"),
+                                     lamplight_text(lamplight_field(shaders, "language")));
     shader->constants = number == UINT32_MAX ? lamplight__null()
                                              : lamplight__root(&bundle->values, number);
     return code;
@@ -1035,6 +1042,17 @@ int lamplight_binding_at(lamplight_value list, uint32_t index, lamplight_binding
     binding->compute = lamplight__has(stages, "compute");
     binding->members = lamplight_field(value, "members");
     return 1;
+}
+
+uint32_t lamplight_index_of(lamplight_value list, const lamplight_binding *binding) {
+    lamplight_binding known;
+    uint32_t i, index = 0;
+    for (i = 0; lamplight_binding_at(list, i, &known); i++) {
+        if (strcmp(known.kind, binding->kind) != 0) continue;
+        if (known.group == binding->group && known.binding == binding->binding) break;
+        index++;
+    }
+    return index;
 }
 
 lamplight_value lamplight_slot(const lamplight_shader *shader, uint32_t group, uint32_t binding) {

@@ -168,7 +168,9 @@ fn refuses(harness: &Harness) -> Outcome {
 /// `tsc` of the site, where it is installed, takes the types; where it is not, this says so.
 fn typescript() -> Outcome {
     let text = written("ts")?;
-    for part in ["export type LitCamera = {", "\"normal\": ArrayLike<number>;", "Partial<LitLamp>[]"] {
+    for part in
+        ["export type LitCamera = {", "\"normal\": ArrayLike<number>;", "Partial<LitLamp>[]"]
+    {
         if !text.contains(part) {
             return Err(format!("there is no `{part}` in {text}").into());
         }

@@ -9,6 +9,8 @@ export interface LinkedProgram {
   /** The texture units, each with the names of its texture and its sampler. */
   units: { unit: number; texture: string; sampler?: string }[];
   frontFace: "same" | "reversed";
+  /** Whether the first row of a frame that was drawn is the top of the picture. */
+  topFirst: boolean;
 }
 
 /** A program of two shaders. */

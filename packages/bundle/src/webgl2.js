@@ -71,7 +71,8 @@ export async function linkProgram(gl, vertex, fragment) {
     numberBlocks(gl, program, shader, blocks);
     numberUnits(gl, program, shader, units);
   }
-  return { program, blocks, units, frontFace: vertex.native.clip?.front_face ?? "same" };
+  const { front_face: frontFace = "same", rows = "top_first" } = vertex.native.clip ?? {};
+  return { program, blocks, units, frontFace, topFirst: rows === "top_first" };
 }
 
 /** Binds a buffer to the block that the author calls so; nothing where the shader has none. */
