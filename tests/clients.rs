@@ -1,6 +1,8 @@
 //! One scene in each client, from one bundle: OpenGL 3.3 and OpenGL ES 3 in C by `lamplight_gl.h`,
-//! WebGPU and WebGL 2 by `@lamplight/bundle`. All 18 keys give the same pictures, but for edges. A
+//! Vulkan in C by `lamplight_vk.h`, wgpu by `lamplight-wgpu`, WebGPU and WebGL 2 by `@lamplight/bundle`. All 18 keys give the same pictures, but for edges. A
 //! client with a mistake gives another one. What each client does for Lamplight has few lines.
+
+mod rust_wgpu;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -35,7 +37,7 @@ pub fn tests() -> Vec<Trial> {
         Trial::test("clients::mistakes_are_seen", mistakes_are_seen),
     ];
     tests.extend(
-        ["gl.c", "web_gpu.mjs", "web_gl2.mjs"].map(|name| {
+        ["gl.c", "vk.c", "rust_wgpu.rs", "web_gpu.mjs", "web_gl2.mjs"].map(|name| {
             Trial::test(format!("clients::few_lines::{name}"), move || few_lines(name))
         }),
     );
@@ -73,21 +75,27 @@ fn prepared() -> Result<tempfile::TempDir, Failed> {
     Ok(folder)
 }
 
-/// An API of the client in C: definitions, and libraries.
-struct Gl {
+/// A client in C: its source, definitions and libraries.
+struct Client {
     name: &'static str,
     arguments: &'static [&'static str],
 }
 
-const GL33: Gl = Gl { name: "gl33", arguments: &["-lEGL", "-lOpenGL"] };
-const GLES: Gl = Gl { name: "gles", arguments: &["-DES", "-lEGL", "-lGLESv2"] };
+const GL33: Client = Client { name: "gl33", arguments: &["gl.c", "-lEGL", "-lOpenGL"] };
+const GLES: Client = Client { name: "gles", arguments: &["gl.c", "-DES", "-lEGL", "-lGLESv2"] };
+/// With the headers of the package `libvulkan-dev`.
+const VULKAN: Client = Client { name: "vulkan", arguments: &["vk.c", "-lvulkan"] };
+
+/// Lavapipe, where Vulkan has several drivers.
+const LAVAPIPE: &str = "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json";
 
 /// What a client in C draws, from a number of picture on.
-fn drawn_by_gl(folder: &Path, gl: &Gl, first: usize) -> Result<Vec<u8>, Failed> {
+fn drawn_in_c(folder: &Path, client: &Client, first: usize) -> Result<Vec<u8>, Failed> {
     let mut command = Command::new("cc");
     command.current_dir(folder).args(["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]);
-    run(command.args(["-I.", "gl.c", "-o", gl.name]).args(gl.arguments))?;
-    let mut command = Command::new(folder.join(gl.name));
+    run(command.args(["-I.", "-o", client.name]).args(client.arguments))?;
+    let mut command = Command::new(folder.join(client.name));
+    command.env("VK_ICD_FILENAMES", LAVAPIPE);
     run(command.current_dir(folder).args(["lit.lamplight", "out.bin", &first.to_string()]))?;
     Ok(std::fs::read(folder.join("out.bin"))?)
 }
@@ -129,7 +137,7 @@ fn differing(one: &[u8], other: &[u8]) -> usize {
 
 fn draw_the_same() -> Outcome {
     let folder = prepared()?;
-    let wanted = drawn_by_gl(folder.path(), &GL33, 0)?;
+    let wanted = drawn_in_c(folder.path(), &GL33, 0)?;
     let pictures: Vec<&[u8]> = wanted.chunks(PICTURE).collect();
     if pictures.len() != KEYS {
         return Err(format!("{} pictures, not {KEYS}", pictures.len()).into());
@@ -140,7 +148,9 @@ fn draw_the_same() -> Outcome {
         }
     }
     let others = [
-        ("OpenGL ES 3", drawn_by_gl(folder.path(), &GLES, 0)?),
+        ("OpenGL ES 3", drawn_in_c(folder.path(), &GLES, 0)?),
+        ("Vulkan", drawn_in_c(folder.path(), &VULKAN, 0)?),
+        ("wgpu", rust_wgpu::pictures(std::fs::read(folder.path().join("lit.lamplight"))?)?),
         ("WebGL 2", drawn_by_web(folder.path(), "web_gl2.mjs")?),
         ("WebGPU", drawn_by_web(folder.path(), "web_gpu.mjs")?),
     ];
@@ -183,7 +193,7 @@ fn mistakes_are_seen() -> Outcome {
         ),
     ];
     let folder = prepared()?;
-    let right = drawn_by_gl(folder.path(), &GL33, KEYS - 1)?;
+    let right = drawn_in_c(folder.path(), &GL33, KEYS - 1)?;
     for (what, file, before, after) in MISTAKES {
         let place = folder.path().join(file);
         let text = std::fs::read_to_string(&place)?;
@@ -192,7 +202,7 @@ fn mistakes_are_seen() -> Outcome {
             return Err(format!("{what}: there is no `{before}`").into());
         }
         std::fs::write(&place, wrong)?;
-        let drawn = drawn_by_gl(folder.path(), &GL33, KEYS - 1)?;
+        let drawn = drawn_in_c(folder.path(), &GL33, KEYS - 1)?;
         std::fs::write(&place, text)?;
         let count = differing(&right, &drawn);
         println!("{what}: {count} texels differ");
@@ -207,7 +217,7 @@ fn mistakes_are_seen() -> Outcome {
 fn few_lines(name: &str) -> Outcome {
     let folder = root().join("tests/clients");
     let mut text = std::fs::read_to_string(folder.join(name))?;
-    if name == "gl.c" {
+    if name.ends_with(".c") {
         text += &std::fs::read_to_string(folder.join("scene.h"))?;
     }
     let (mut count, mut is_inside) = (0, false);

@@ -52,9 +52,10 @@ const LICENSES: [(&str, &str); 2] = [
 ];
 
 /// The reader of bundles in C.
-const HEADERS: [(&str, &str); 3] = [
+const HEADERS: [(&str, &str); 4] = [
     ("lamplight.h", include_str!("../../../include/lamplight.h")),
     ("lamplight_gl.h", include_str!("../../../include/lamplight_gl.h")),
+    ("lamplight_vk.h", include_str!("../../../include/lamplight_vk.h")),
     ("lamplight_zstd.h", include_str!("../../../include/lamplight_zstd.h")),
 ];
 
