@@ -1,6 +1,6 @@
 //! Draws the scene with wgpu on lavapipe, by `lamplight-wgpu`.
 
-use lamplight::bundle::{Bundle, Language, Target}; // lamplight
+use lamplight::bundle::{Binding, Bundle, Language, Target}; // lamplight
 use lamplight_wgpu::{Block, PipelineLayout, Stage, pipeline_layout, vertex_attributes}; // lamplight
 use libtest_mimic::Failed;
 use wgpu::util::DeviceExt as _;
@@ -73,7 +73,7 @@ fn keys() -> impl Iterator<Item = String> {
     })
 }
 
-fn camera_block(binding: &lamplight::bundle::Binding) -> Result<Block<'_>, Failed> {
+fn camera_block(binding: &Binding) -> Result<Block<'_>, Failed> {
     let mut camera = Block::new(binding); // lamplight
     camera.set(
         "clip_from_world",
@@ -85,7 +85,7 @@ fn camera_block(binding: &lamplight::bundle::Binding) -> Result<Block<'_>, Faile
     Ok(camera)
 }
 
-fn lamps_block(binding: &lamplight::bundle::Binding) -> Result<Block<'_>, Failed> {
+fn lamps_block(binding: &Binding) -> Result<Block<'_>, Failed> {
     const LAMPS: [([f32; 3], f32, [f32; 3]); 3] = [
         ([0.6, 0.5, 1.2], 1.0, [1.0, 0.8, 0.5]),
         ([-0.7, 0.2, 0.9], 1.7, [0.4, 0.6, 1.0]),
@@ -175,20 +175,16 @@ impl Scene {
             "image_sampler" => wgpu::BindingResource::Sampler(&plain),
             _ => wgpu::BindingResource::Sampler(&compare),
         };
-        let group = |(index, layout): (usize, &wgpu::BindGroupLayout)| {
+        let group = |(index, layout)| {
             let own = bindings.iter().map(|found| &found.binding);
             let own = own.filter(|binding| binding.group as usize == index);
-            let entries: Vec<_> = own
-                .map(|found| wgpu::BindGroupEntry {
-                    binding: found.binding,
-                    resource: resource(&found.name),
-                })
-                .collect();
-            self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: None,
-                layout,
-                entries: &entries,
-            })
+            let entry = |found: &Binding| {
+                let (binding, resource) = (found.binding, resource(&found.name));
+                wgpu::BindGroupEntry { binding, resource }
+            };
+            let entries: Vec<_> = own.map(entry).collect();
+            let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
+            self.device.create_bind_group(&descriptor)
         };
         Ok(layout.groups.iter().enumerate().map(group).collect())
     }
