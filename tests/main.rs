@@ -17,6 +17,7 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 mod bounds;
 mod browser;
 mod catalogue;
+mod clients;
 mod command_line;
 mod conventions;
 mod cost;
@@ -76,6 +77,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     site::tests,
     browser::tests,
     catalogue::tests,
+    clients::tests,
     bounds::tests,
     conventions::tests,
     cost::tests,

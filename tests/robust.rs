@@ -269,10 +269,10 @@ fn versions() -> Outcome {
     package.generate()?;
     let manifest = package.bundle().join("manifest.json");
     let text = std::fs::read_to_string(&manifest)?;
-    std::fs::write(&manifest, text.replacen("\"version\": 1", "\"version\": 99", 1))?;
+    std::fs::write(&manifest, text.replacen("\"version\": 2", "\"version\": 99", 1))?;
     fails(&inspect("list", &package.bundle())?, 1, "version 99")?;
     // The next run would lose what a newer version wrote, so it needs `--force`.
-    fails(&package.command(&package.bundle()).output()?, 1, "newer than version 1")?;
+    fails(&package.command(&package.bundle()).output()?, 1, "newer than version 2")?;
     let forced = package.command(&package.bundle()).arg("--force").output()?;
     if !forced.status.success() {
         return Err(code_and_stderr(&forced).into());

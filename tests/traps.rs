@@ -49,6 +49,7 @@ const FOLDERS: &[Writer] = &[
     writer("migrate", &["migrate", "--from", "naga_oil", "oil", "-o", "OUT"]),
     writer("man", &["man", "-o", "OUT"]),
     writer("export_npm", &["export", "OUT", "--form", "npm"]),
+    writer("export_c", &["export", "OUT", "--form", "c"]),
     writer("catalogue", &["catalogue", "-o", "OUT", "--without-pictures"]),
     writer("report", &["check", "half.toml", "--report", "OUT"]),
     Writer {
@@ -73,6 +74,7 @@ const FILES: &[Writer] = &[
     writer("render", &["render", "hpg_4_spot", "--executor", "eval", "--size", "8x8", "-o", "OUT"]),
     writer("keys_rust", &["keys", "--manifest", "lamplight.toml", "--lang", "rust", "-o", "OUT"]),
     writer("keys_c", &["keys", "--manifest", "lamplight.toml", "--lang", "c", "-o", "OUT"]),
+    writer("bindings", &["bindings", "ready", "--lang", "c", "-o", "OUT"]),
     writer("variants", &["variants", "--cost", "--gpu", "navi21", "--record", "OUT"]),
     writer("cost", &["cost", "half.wesl", "--gpu", "navi21", "--record", "--baseline", "OUT"]),
     writer("values", &["check", "half.toml", "--record", "OUT"]),

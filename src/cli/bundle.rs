@@ -176,7 +176,11 @@ fn fetch_file(get: &Get) -> Result<(), Failure> {
         return Ok(writeln!(
             stdout(),
             "{:#}",
-            serde_json::json!({ "reflection": &*found.reflection, "native": &*found.native })
+            serde_json::json!({
+                "reflection": &*found.reflection,
+                "native": &*found.native,
+                "constants": found.constants,
+            })
         )?);
     }
     match &get.out {

@@ -79,6 +79,7 @@ const ENTRIES: &[HelpEntry] = &[
         ],
     ),
     guide_entry("keys", "In an engine", &["lamplight keys --lang rust"]),
+    guide_entry("bindings", "In an engine", &["lamplight bindings bundle --lang c"]),
     guide_entry(
         "eval",
         FIRST,

@@ -3,6 +3,7 @@
 //! One file a command. Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 a check or a
 //! comparison failed, 4 the environment lacks something.
 
+mod bindings;
 mod bundle;
 mod cached;
 mod catalogue;
@@ -85,6 +86,7 @@ enum Command {
     Watch(watch::Arguments),
     Bundle(bundle::Arguments),
     Keys(keys::Arguments),
+    Bindings(bindings::Arguments),
     Eval(eval::Arguments),
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
@@ -241,6 +243,7 @@ fn dispatch_command(
         Command::Watch(arguments) => watch::run_watch(arguments, form),
         Command::Bundle(arguments) => bundle::run_bundle(arguments),
         Command::Keys(arguments) => keys::run_keys(arguments, form),
+        Command::Bindings(arguments) => bindings::run_bindings(&arguments),
         Command::Eval(arguments) => eval::run_eval(arguments, form),
         Command::Check(arguments) => check::run_check(arguments),
         Command::Catalogue(arguments) => catalogue::run_catalogue(arguments, gpus),

@@ -141,17 +141,17 @@ pub fn newer() -> Outcome {
     package.generate(&[])?;
     package.generate(&["-o", "bundle.lamplight"])?;
     let manifest = fs::read_to_string(package.path().join("bundle/manifest.json"))?;
-    let manifest = manifest.replace("\"version\": 1", "\"version\": 2");
+    let manifest = manifest.replace("\"version\": 2", "\"version\": 3");
     package.write("bundle/manifest.json", &manifest)?;
     let path = package.path().join("bundle.lamplight");
     let mut bytes = fs::read(&path)?;
-    bytes[8] = 2;
+    bytes[8] = 3;
     fs::write(&path, &bytes)?;
     for out in ["bundle", "bundle.lamplight"] {
         let output = package.run(&["gen", "--cache", "cache", "-o", out])?;
         let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
         equal(output.status.code(), Some(1))?;
-        ensure(stderr.contains("format version 2") && stderr.contains("--force"), stderr)?;
+        ensure(stderr.contains("format version 3") && stderr.contains("--force"), stderr)?;
     }
     equal(fs::read_to_string(package.path().join("bundle/manifest.json"))?, manifest)?;
     equal(fs::read(&path)?, bytes)?;

@@ -56,6 +56,7 @@ fn numbers_are_demanded() -> Result<(), Failed> {
         offset,
         size: 12,
         stride: None,
+        shape: None,
         members: Vec::new(),
     };
     let binding = Binding {
@@ -67,6 +68,8 @@ fn numbers_are_demanded() -> Result<(), Failed> {
         count: None,
         size: Some(32),
         writable: false,
+        shape: None,
+        texture: None,
         members: vec![member("color", 0), member("tint", 16)],
     };
     let numbers = |count: usize| {

@@ -33,6 +33,32 @@ const NEEDS: &[Need] = &[
         found: || Path::new("/usr/lib/chromium/vk_swiftshader_icd.json").exists(),
     },
     Need { package: "nodejs", what: "node, for the typed keys", found: || program("node") },
+    Need { package: "gcc", what: "cc, for clients in C", found: || program("cc") },
+    Need {
+        package: "libegl-dev",
+        what: "the headers of EGL",
+        found: || Path::new("/usr/include/EGL/egl.h").exists(),
+    },
+    Need {
+        package: "libgl-dev",
+        what: "the headers of OpenGL",
+        found: || Path::new("/usr/include/GL/glcorearb.h").exists(),
+    },
+    Need {
+        package: "libopengl-dev",
+        what: "the library of OpenGL to link with",
+        found: || Path::new("/usr/lib/x86_64-linux-gnu/libOpenGL.so").exists(),
+    },
+    Need {
+        package: "libgles-dev",
+        what: "the headers of OpenGL ES",
+        found: || Path::new("/usr/include/GLES3/gl3.h").exists(),
+    },
+    Need {
+        package: "libvulkan-dev",
+        what: "the headers of Vulkan",
+        found: || Path::new("/usr/include/vulkan/vulkan.h").exists(),
+    },
     Need { package: "spirv-tools", what: "spirv-val", found: || program("spirv-val") },
     Need {
         package: "glslang-tools",

@@ -75,8 +75,9 @@ const LEFTOVERS: [&str; 10] =
     [".new", ".orig", ".rej", ".bak", ".tmp", ".log", ".swp", ".profraw", ".spv", "~"];
 
 /// Files that may be binary: pictures, tables, and inputs that are wrong on purpose.
-const BINARIES: [&str; 13] = [
+const BINARIES: [&str; 15] = [
     ".png",
+    ".lamplight",
     "shaderlib/tables/blue_noise.bin",
     "shaderlib/tables/blue_noise.ktx2",
     "shaderlib/tables/dfg.bin",
@@ -85,6 +86,7 @@ const BINARIES: [&str; 13] = [
     "shaderlib/tables/ltc.ktx2",
     "shaderlib/tables/sheen.bin",
     "shaderlib/tables/sheen.ktx2",
+    "tests/bundles/good/index.bin",
     "tests/regressions/bundle/valid",
     "tests/regressions/picture/valid",
     "tests/regressions/record/diagnostics",

@@ -7,11 +7,14 @@ use std::sync::Arc;
 use super::contents::{checksum, from_hex, refuse_control_characters, to_hex};
 use super::layout::MOST_GROUP_BYTES;
 use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit};
+use super::pack::pack_index;
 use super::store::{self, Store, StoredArtifact, StoredProgram, StoredPrograms};
 use super::{Axis, Error, Hash, Native, Reflection, ShardOrigin, Stage};
 use lamplight_files::input;
 
 pub(super) const MANIFEST: &str = "manifest.json";
+/// The binary form of the manifest, for readers that read no JSON: see [`super::layout`].
+pub(super) const INDEX: &str = "index.bin";
 pub(super) const BLOBS: &str = "blobs";
 
 /// The most bytes of a manifest: forty times what 100,000 permutations need.
@@ -22,6 +25,7 @@ type NumberedArtifacts = BTreeMap<String, (ManifestArtifact, u32)>;
 
 /// An open directory; blobs are read when asked for.
 pub struct Directory {
+    path: PathBuf,
     blobs: PathBuf,
     programs: StoredPrograms,
     shard: Option<ShardOrigin>,
@@ -47,6 +51,7 @@ pub(super) fn read_manifest(path: &Path) -> Result<Manifest, Error> {
 pub fn open(path: &Path) -> Result<Directory, Error> {
     let manifest = read_manifest(path)?;
     let mut directory = Directory {
+        path: path.to_owned(),
         blobs: path.join(BLOBS),
         programs: StoredPrograms::new(),
         shard: manifest.shard,
@@ -74,7 +79,11 @@ pub fn open(path: &Path) -> Result<Directory, Error> {
         let entries = program.entries.values().flat_map(BTreeMap::keys);
         refuse_control_characters(MANIFEST, std::iter::once(&name).chain(entries))?;
         refuse_control_characters(MANIFEST, program.axes.iter().flat_map(Axis::names))?;
-        let mut index = StoredProgram { axes: program.axes, ..StoredProgram::default() };
+        let mut index = StoredProgram {
+            axes: program.axes,
+            layouts: program.layouts,
+            ..StoredProgram::default()
+        };
         for (language, entries) in program.entries {
             for (entry, contents) in entries {
                 index.entries.insert((language, entry), directory.keys.len());
@@ -248,6 +257,12 @@ impl Store for Directory {
 
     fn verify(&self) -> Result<(), Error> {
         (0..self.artifacts.len() as u32).try_for_each(|blob| self.blob(blob).map(|_| ()))?;
-        (0..self.units.len() as u32).try_for_each(|unit| self.unit(unit).map(|_| ()))
+        (0..self.units.len() as u32).try_for_each(|unit| self.unit(unit).map(|_| ()))?;
+        let index = input::read_file(&self.path.join(INDEX), MOST_MANIFEST_BYTES)
+            .map_err(|error| Error::Io(format!("{INDEX}: {error}")))?;
+        match index == pack_index(&read_manifest(&self.path)?)? {
+            true => Ok(()),
+            false => Err(Error::corrupt(INDEX, format!("it is not that of {MANIFEST}"))),
+        }
     }
 }

@@ -1,8 +1,10 @@
 //! Writes the directory form.
 //!
 //! A run collects its blobs in a scratch folder inside the directory. When all are there and
-//! synced, they are renamed into `blobs/`. Then one rename puts the manifest into its place. So
-//! whenever the run is killed, the directory holds either the old bundle or the new one, complete.
+//! synced, they are renamed into `blobs/`. Then one rename puts the index into its place,
+//! and another one the manifest. So whenever the run is killed, the directory holds either the old
+//! bundle or the new one, complete; between the two renames, the index already names the new one,
+//! all of whose blobs are there.
 //!
 //! A program that has the older bundle open can go on reading it: its blobs are listed in
 //! [`RETIRED`] and stay until the next run. Only blobs that a manifest of ours names are ever
@@ -15,10 +17,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::directory::{
-    BLOBS, BlobFile, MANIFEST, MOST_MANIFEST_BYTES, blob_files_of_manifest, read_manifest,
+    BLOBS, BlobFile, INDEX, MANIFEST, MOST_MANIFEST_BYTES, blob_files_of_manifest, read_manifest,
 };
+use super::layout::MAGIC;
 use super::manifest::{self, Before, Manifest, ManifestArtifact};
-use super::pack::newer_bundle;
+use super::pack::{newer_bundle, pack_index};
 use super::staging::add_unit;
 use super::{Contents, Digest, Digester, Error, Unit};
 use lamplight_files::output::{self, Foreign, Replace, Scratch, Turns};
@@ -76,6 +79,7 @@ impl DirectoryWriter {
         let turn = output::wait_for_turn(path, turns)?;
         let before = survey_manifest(path, replace)?;
         let is_ours = before.is_some();
+        survey_index(path, replace)?;
         let live = before.unwrap_or_default();
         let retired = read_retired(path, replace)?;
         let blobs = path.join(BLOBS);
@@ -156,7 +160,7 @@ impl DirectoryWriter {
     pub fn finish(self, contents: &Contents) -> Result<(), Error> {
         let mut manifest = std::mem::take(&mut *self.manifest());
         manifest.outline(contents)?;
-        self.publish(&manifest)
+        self.publish(manifest)
     }
 
     /// Sets the keys of `contents`, and leaves all others as they are.
@@ -176,30 +180,39 @@ impl DirectoryWriter {
             }
         }
         manifest.programs = others;
-        self.publish(&manifest)
+        self.publish(manifest)
     }
 
     /// Puts the blobs and the manifest in place. Each step leaves the older bundle complete. If a
     /// run is killed, the manifest in its scratch folder tells the next run which blobs may have
     /// been moved already.
-    fn publish(&self, manifest: &Manifest) -> Result<(), Error> {
+    fn publish(&self, mut manifest: Manifest) -> Result<(), Error> {
+        manifest.complete()?;
         let artifacts = manifest.units.values().flat_map(|unit| unit.targets.values());
         let next = artifacts.map(ManifestArtifact::file).collect::<Result<BTreeSet<_>, _>>()?;
         let mut text = Vec::new();
-        manifest::write_manifest(manifest, &mut text)?;
+        manifest::write_manifest(&manifest, &mut text)?;
         let place = self.path.join(MANIFEST);
-        let is_same = fs::read(&place).is_ok_and(|found| found == text);
+        let index = pack_index(&manifest)?;
+        let is_same = fs::read(&place).is_ok_and(|found| found == text)
+            && fs::read(self.path.join(INDEX)).is_ok_and(|found| found == index);
         let staged = self.staged.lock().unwrap_or_else(PoisonError::into_inner);
         self.check_blobs(&staged)?;
         // The blobs are synced before a manifest names them. So a loss of power cannot leave a
         // manifest whose blobs are missing.
         self.scratch.sync(&staged.iter().map(String::as_str).collect::<Vec<_>>())?;
-        let written = self.scratch.write(MANIFEST, &text)?;
+        let written = [
+            (self.scratch.write(INDEX, &index)?, self.path.join(INDEX)),
+            (self.scratch.write(MANIFEST, &text)?, place),
+        ];
         self.remove_retired(&next);
         self.move_blobs(&staged)?;
         self.write_retired(self.live.difference(&next))?;
         if !is_same {
-            output::rename_finished(&written, &place).map_err(|error| io_error(&place, &error))?;
+            for (written, place) in written {
+                output::rename_finished(&written, &place)
+                    .map_err(|error| io_error(&place, &error))?;
+            }
             output::sync_folder(&self.path);
         }
         Ok(())
@@ -284,6 +297,19 @@ fn survey_manifest(path: &Path, replace: Replace) -> Result<Option<BTreeSet<Stri
         Before::Unreadable | Before::Newer(_) => Ok(Some(BTreeSet::new())),
         Before::Foreign if replace == Replace::Any || text.is_empty() => Ok(None),
         Before::Foreign => Err(Error::Foreign(foreign_file(&place))),
+    }
+}
+
+/// Refuses an index that is a link or no file, and one of somebody else.
+fn survey_index(path: &Path, replace: Replace) -> Result<(), Error> {
+    let place = path.join(INDEX);
+    match read_own(&place)? {
+        Some(bytes)
+            if replace == Replace::Ours && !bytes.is_empty() && !bytes.starts_with(MAGIC) =>
+        {
+            Err(Error::Foreign(foreign_file(&place)))
+        }
+        _ => Ok(()),
     }
 }
 

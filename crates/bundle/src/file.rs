@@ -17,6 +17,7 @@ use bytes::BundleBytes;
 use super::contents::{Hash, checksum, refuse_control_characters, to_hex};
 use super::layout::*;
 use super::store::{Store, StoredArtifact, StoredProgram, StoredPrograms, StoredUnit};
+use super::tree::Tree;
 use super::{Axis, Error, Reflection, ShardOrigin, VERSION};
 use crate::packing;
 use lamplight_files::limits::MANIFEST_BYTES;
@@ -60,8 +61,7 @@ fn parse_file(bytes: BundleBytes) -> Result<Packed, Error> {
     if checksum(&text) != expected {
         return Err(Error::corrupt("meta", "the checksum does not match"));
     }
-    let meta: Meta =
-        serde_json::from_slice(&text).map_err(|error| Error::corrupt("meta", error.to_string()))?;
+    let meta: Meta = Tree::new(&text, "meta")?.get(0)?;
     drop(text);
     meta.targets.iter().try_for_each(|target| {
         refuse_control_characters("meta", [&target.name, &target.extension])
@@ -79,8 +79,8 @@ fn parse_file(bytes: BundleBytes) -> Result<Packed, Error> {
             numbers.insert((entry.language, entry.name.clone()), entries.len());
             entries.push(entry.clone());
         }
-        programs
-            .insert(name.clone(), StoredProgram { axes: program.axes.clone(), entries: numbers });
+        let (axes, layouts) = (program.axes.clone(), program.layouts.clone());
+        programs.insert(name.clone(), StoredProgram { axes, layouts, entries: numbers });
     }
     Ok(Packed {
         bytes,
@@ -199,20 +199,12 @@ impl Packed {
         u32_at(keys, entry.units as usize + index * 4, "keys")
     }
 
-    /// One of the JSON texts, parsed.
-    fn text<T: DeserializeOwned>(&self, index: u32) -> Result<T, Error> {
-        if index >= self.meta.texts {
-            return Err(Error::corrupt("texts", "a number is out of range"));
+    /// A value of the section VALUES.
+    fn value<T: DeserializeOwned>(&self, index: u32) -> Result<T, Error> {
+        if index >= self.meta.values {
+            return Err(Error::corrupt("values", "a number is out of range"));
         }
-        let texts = self.section(TEXTS)?;
-        let record = index as usize * RECORD_BYTES;
-        let text = slice_at(
-            texts,
-            u32_at(texts, record, "texts")? as usize,
-            u32_at(texts, record + 4, "texts")? as usize,
-            "texts",
-        )?;
-        serde_json::from_slice(text).map_err(|error| Error::corrupt("texts", error.to_string()))
+        Tree::new(self.section(VALUES)?, "values")?.get(index)
     }
 
     /// Of a unit: the reflection, the first artifact and the number of artifacts.
@@ -244,7 +236,7 @@ impl Packed {
         native: u32,
         blob: u32,
     ) -> Result<StoredArtifact, Error> {
-        let (extension, native) = (target.extension.clone(), Arc::new(self.text(native)?));
+        let (extension, native) = (target.extension.clone(), Arc::new(self.value(native)?));
         Ok(StoredArtifact { extension, native, blob })
     }
 
@@ -356,7 +348,7 @@ impl Store for Packed {
             let (target, native, blob) = self.artifact_record(artifact)?;
             targets.insert(target.name.clone(), self.artifact_of(target, native, blob)?);
         }
-        Ok(StoredUnit { reflection: Arc::new(self.text(reflection)?), targets })
+        Ok(StoredUnit { reflection: Arc::new(self.value(reflection)?), targets })
     }
 
     fn artifact(
@@ -370,7 +362,7 @@ impl Store for Packed {
             let (found, native, blob) = self.artifact_record(artifact)?;
             if found.name == target {
                 let artifact = self.artifact_of(found, native, blob)?;
-                return Ok((Arc::new(self.text(reflection)?), artifact));
+                return Ok((Arc::new(self.value(reflection)?), artifact));
             }
             known.push(found.name.clone());
         }

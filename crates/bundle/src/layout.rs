@@ -3,31 +3,33 @@
 //! ```text
 //! header    magic, version, section count, file length,
 //!           per section: offset, length, checksum; checksum of all that
-//! META      JSON: programs, axes, entry points, targets, counts
+//! META      a tree with one root: programs, axes, layouts, entry points, targets, counts
 //! KEYS      per key set: records (offset, length) sorted by text, hash slots, text;
-//!           per entry point: one unit number for each key of its set
+//!           per entry point: one unit number for each key of its set, and where some key chooses
+//!           constants, the number of a value, or NONE, for each key
 //! UNITS     per unit: reflection, first artifact, artifact count; per artifact: target, native, blob
-//! TEXTS     (offset, length) for each, then JSON of reflections and natives
+//! VALUES    a tree: reflections, natives, lists of constants
 //! BLOBS     per blob: group, offset, length, checksum; per group: offset, lengths, checksum
 //! DATA      groups, zstd, without gaps
 //! ```
-//! Integers are little-endian, of 32 bits unless said otherwise; nothing is aligned.
+//! [`super::tree`] says what a tree is. Integers are little-endian, of 32 bits unless said otherwise; nothing is aligned.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use super::contents::Hash;
+use super::store::Layouts;
 use super::{Axis, Error, Language, ShardOrigin};
 
 pub const MAGIC: &[u8; 8] = b"LAMPLGHT";
 
 /// Sections in the order of the file.
-pub const SECTIONS: [&str; 6] = ["meta", "keys", "units", "texts", "blobs", "data"];
+pub const SECTIONS: [&str; 6] = ["meta", "keys", "units", "values", "blobs", "data"];
 pub const META: usize = 0;
 pub const KEYS: usize = 1;
 pub const UNITS: usize = 2;
-pub const TEXTS: usize = 3;
+pub const VALUES: usize = 3;
 pub const BLOBS: usize = 4;
 pub const DATA: usize = 5;
 
@@ -54,7 +56,7 @@ pub struct Meta {
     pub programs: BTreeMap<String, ProgramMeta>,
     pub units: u32,
     pub artifacts: u32,
-    pub texts: u32,
+    pub values: u32,
     pub blobs: u32,
     pub groups: u32,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -70,6 +72,8 @@ pub struct TargetMeta {
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct ProgramMeta {
     pub axes: Vec<Axis>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub layouts: Layouts,
     pub entries: Vec<EntryMeta>,
 }
 
@@ -80,7 +84,13 @@ pub struct EntryMeta {
     pub keys: KeySet,
     /// Where its unit numbers start in KEYS.
     pub units: u32,
+    /// Where the numbers of its keys' constants start in KEYS, if some key chooses constants.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub constants: Option<u32>,
 }
+
+/// In the place of the number of a value: there is none.
+pub const NONE: u32 = u32::MAX;
 
 /// A set of keys, often shared by the entry points of a program.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]

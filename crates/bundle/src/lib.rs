@@ -26,12 +26,14 @@ mod packing;
 #[cfg(not(feature = "single-file"))]
 #[path = "packing/absent.rs"]
 mod packing;
+mod program_layout;
 mod reflection;
 mod reload;
 mod shard;
 mod staging;
 mod store;
 mod target;
+mod tree;
 mod usage;
 
 pub use contents::{Artifact, Axis, Contents, EntryContents, Hash, ProgramContents, Unit};
@@ -49,10 +51,11 @@ pub use manifest::SCHEMA;
 pub use merge::{merge, merge_into, patch_directory};
 pub use names::{Language, Stage};
 pub use pack::{pack, replace_file, write_file};
+pub use program_layout::LayoutBinding;
 pub use reflection::{
-    Binding, BindingKind, BindingSlot, BufferSizes, ClipSpace, Combined, FrontFace, HeapSampler,
-    Member, Native, Override, OverrideChoice, Pair, Place, Reflection, RowOrder, SamplerHeap,
-    Semantic, Varying, Viewport, YAxis,
+    Access, Binding, BindingKind, BindingSlot, BufferSizes, ClipSpace, Combined, FrontFace,
+    HeapSampler, Member, Native, Override, OverrideChoice, Pair, Place, Reflection, RowOrder,
+    SampleType, SamplerHeap, Semantic, Shape, TextureShape, Varying, Viewport, YAxis,
 };
 pub use shard::{ShardMismatch, ShardOrigin};
 pub use staging::stage_blobs;
@@ -61,5 +64,6 @@ pub use usage::Usage;
 #[doc(hidden)]
 pub use usage::usage_lines;
 
-/// Version of both forms; a loader reads exactly one.
-pub const VERSION: u32 = 1;
+/// Version of both forms. It changes only when an older reader would misread a bundle: members of
+/// records may be added without a new version.
+pub const VERSION: u32 = 2;

@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::contents::Contents;
 use super::store::{self, Store};
 use super::usage::{Recorder, Usage};
 use super::{
-    Artifact, Axis, EntryContents, Error, Language, Miss, Native, ProgramContents, Reflection,
-    ShardOrigin, Target, Unit, directory, file, key,
+    Artifact, Axis, EntryContents, Error, Language, LayoutBinding, Miss, Native, ProgramContents,
+    Reflection, ShardOrigin, Target, Unit, directory, file, key,
 };
 
 /// An open bundle of either form. Cheap to share between threads.
@@ -69,12 +71,37 @@ pub struct Found {
 }
 
 /// The value of an override.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Constant {
     /// As in the reflection.
     pub name: String,
+    /// Type in WGSL: `bool`, `i32`, `u32` or `f32`.
+    #[serde(rename = "type")]
+    pub ty: String,
     /// `true`, `false` or an integer.
     pub value: String,
+    /// The value as the 32 bits of its type, as a specialisation constant takes it; 0 and 1 for
+    /// `false` and `true`.
+    pub bits: u32,
+}
+
+impl Constant {
+    /// The constant for a value of an axis, which is a truth value or an integer.
+    fn of_axis(axis: &Axis, ty: &str, value: &str) -> Result<Self, Error> {
+        let bits = match (ty, value) {
+            ("bool", "true") => Some(1),
+            ("bool", "false") => Some(0),
+            ("i32", _) => value.parse::<i32>().ok().map(|value| value as u32),
+            ("u32", _) => value.parse().ok(),
+            ("f32", _) => value.parse::<f32>().ok().map(f32::to_bits),
+            _ => None,
+        };
+        let bits = bits.ok_or_else(|| Error::BadKey {
+            key: format!("{}={value}", axis.name),
+            reason: format!("an override of type `{ty}` does not take this value"),
+        })?;
+        Ok(Self { name: axis.name.clone(), ty: ty.to_owned(), value: value.to_owned(), bits })
+    }
 }
 
 impl Bundle {
@@ -213,6 +240,12 @@ impl<'a> Program<'a> {
         &self.program.axes
     }
 
+    /// What all permutations in a language bind together, by group and binding: what an engine makes
+    /// one pipeline layout of. Empty for a language that the program does not have.
+    pub fn layout(&self, language: Language) -> &'a [LayoutBinding] {
+        self.program.layouts.get(&language).map_or(&[], Vec::as_slice)
+    }
+
     /// Its entry points, by language and name.
     pub fn entries(&self) -> impl Iterator<Item = (Language, &'a str)> {
         self.program.entries.keys().map(|(language, name)| (*language, name.as_str()))
@@ -291,6 +324,11 @@ impl Shader<'_> {
         Ok(keys)
     }
 
+    /// The reflection of a key's shader, without reading its bytes.
+    pub fn reflection(&self, key: &str) -> Result<Arc<Reflection>, Error> {
+        Ok(self.store.unit(self.find(key)?)?.reflection)
+    }
+
     /// Names of the targets that a key was compiled for, sorted.
     pub fn targets(&self, key: &str) -> Result<Vec<String>, Error> {
         Ok(self.store.unit(self.find(key)?)?.targets.into_keys().collect())
@@ -324,23 +362,17 @@ pub fn constants(
     key: &str,
     reflection: &Reflection,
 ) -> Result<Vec<Constant>, Error> {
-    let open = |axis: &&Axis| {
-        axis.mode == "spec"
-            && reflection
-                .overrides
-                .iter()
-                .any(|constant| constant.name.as_ref() == Some(&axis.name))
-    };
-    let open: Vec<&Axis> = axes.iter().filter(open).collect();
+    let open = axes.iter().filter(|axis| axis.mode == "spec").filter_map(|axis| {
+        let mut overrides = reflection.overrides.iter();
+        let found = overrides.find(|constant| constant.name.as_ref() == Some(&axis.name))?;
+        Some((axis, found.ty.as_str()))
+    });
+    let open: Vec<_> = open.collect();
     if open.is_empty() {
         return Ok(Vec::new());
     }
     let key = key::canonical(axes, key)?;
-    let constant = |axis: &&Axis| Constant {
-        name: axis.name.clone(),
-        value: key::value(&key, axis).to_owned(),
-    };
-    Ok(open.iter().map(constant).collect())
+    open.into_iter().map(|(axis, ty)| Constant::of_axis(axis, ty, key::value(&key, axis))).collect()
 }
 
 fn not_found<T: AsRef<str>>(

@@ -2,13 +2,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write as _};
+use std::sync::Arc;
 
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
-use super::contents::{checksum, shortened_hash, to_hex};
+use super::contents::{checksum, from_hex, shortened_hash, to_hex, to_json};
+use super::program_layout::{EntryKeys, program_layout};
+use super::store::Layouts;
 use super::{
-    Axis, Contents, Digest, Error, Hash, Language, Native, Reflection, ShardOrigin, Unit, VERSION,
+    Artifact, Axis, Constant, Contents, Digest, EntryContents, Error, Hash, Language, Native,
+    ProgramContents, Reflection, ShardOrigin, Unit, VERSION,
 };
 
 /// The published JSON Schema of the manifest.
@@ -30,6 +34,9 @@ pub struct Manifest {
     pub units: BTreeMap<String, ManifestUnit>,
     pub reflections: BTreeMap<String, Reflection>,
     pub natives: BTreeMap<String, Native>,
+    /// Lists of constants, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub constants: BTreeMap<String, Vec<Constant>>,
     /// The checksum of the file's text, in which zeros stand for the checksum itself. It is the
     /// last value of the file.
     pub checksum: String,
@@ -44,6 +51,7 @@ impl Default for Manifest {
             units: BTreeMap::new(),
             reflections: BTreeMap::new(),
             natives: BTreeMap::new(),
+            constants: BTreeMap::new(),
             checksum: BLANK.to_owned(),
         }
     }
@@ -52,12 +60,18 @@ impl Default for Manifest {
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct ManifestProgram {
     pub axes: Vec<Axis>,
+    /// What the permutations bind together, by language.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub layouts: Layouts,
     pub entries: BTreeMap<Language, BTreeMap<String, ManifestEntry>>,
 }
 
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct ManifestEntry {
     pub keys: BTreeMap<String, String>,
+    /// For each key that chooses constants, the name of a list of them.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub constants: BTreeMap<String, String>,
 }
 
 #[derive(Debug, Default, Serialize, Deserialize)]
@@ -91,6 +105,31 @@ fn blob_file_name(blob: &str, extension: &str) -> Option<String> {
     let is_part =
         |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_alphanumeric());
     (is_hex && parts.all(is_part)).then(|| format!("{}.{extension}", &blob[..16]))
+}
+
+/// What stands for the bytes of a blob where they are in a file.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FileStub {
+    /// The hash of the bytes.
+    pub hash: Hash,
+    /// How many there are.
+    pub length: u32,
+}
+
+impl FileStub {
+    /// The stub as bytes.
+    pub fn write(self) -> Vec<u8> {
+        [&self.hash[..], &self.length.to_le_bytes()].concat()
+    }
+
+    /// Reads what [`Self::write`] wrote.
+    pub fn read(bytes: &[u8]) -> Self {
+        let read = bytes.split_first_chunk().and_then(|(hash, rest)| {
+            let length = u32::from_le_bytes(*rest.first_chunk()?);
+            Some(Self { hash: *hash, length })
+        });
+        read.unwrap_or_default()
+    }
 }
 
 /// Writes the text of a manifest, with its checksum at the end.
@@ -272,12 +311,86 @@ impl Manifest {
                     copy.entries
                         .entry(*language)
                         .or_default()
-                        .insert(entry.clone(), ManifestEntry { keys });
+                        .insert(entry.clone(), ManifestEntry { keys, ..ManifestEntry::default() });
                 }
             }
             self.programs.insert(name.clone(), copy);
         }
         Ok(())
+    }
+
+    /// Derives what depends on all units of a program: its layouts, and the constants of its keys.
+    ///
+    /// # Errors
+    /// [`Error::Corrupt`] where a key refers to a unit, or a unit to a reflection, that is not there.
+    pub fn complete(&mut self) -> Result<(), Error> {
+        let Self { programs, units, reflections, constants, .. } = self;
+        constants.clear();
+        let lost = || Error::corrupt("contents", "a key refers to no unit");
+        for program in programs.values_mut() {
+            let ManifestProgram { axes, layouts, entries } = program;
+            layouts.clear();
+            for (language, entries) in entries {
+                let mut all = Vec::new();
+                for ManifestEntry { keys, constants: chosen } in entries.values_mut() {
+                    let mut found = Vec::with_capacity(keys.len());
+                    for (key, unit) in keys.iter() {
+                        let unit = units.get(unit).ok_or_else(lost)?;
+                        let reflection = reflections.get(&unit.reflection).ok_or_else(lost)?;
+                        found.push((key.as_str(), reflection));
+                    }
+                    let grouped = EntryKeys::new(found.into_iter());
+                    chosen.clear();
+                    for (key, list) in grouped.constants(axes)? {
+                        let name = to_hex(&checksum(&to_json(&list)?));
+                        chosen.insert(key.to_owned(), name.clone());
+                        constants.entry(name).or_insert(list);
+                    }
+                    all.push(grouped);
+                }
+                layouts.insert(*language, program_layout(axes, &all));
+            }
+        }
+        Ok(())
+    }
+
+    /// The contents, with a [`FileStub`] in the place of the bytes of each blob.
+    pub fn contents(&self) -> Result<Contents, Error> {
+        let lost = || Error::corrupt("manifest.json", "a name is not there");
+        let natives: BTreeMap<_, _> =
+            self.natives.iter().map(|(name, native)| (name, Arc::new(native.clone()))).collect();
+        let mut units = BTreeMap::new();
+        for (name, unit) in &self.units {
+            let reflection = self.reflections.get(&unit.reflection).ok_or_else(lost)?;
+            let mut targets = BTreeMap::new();
+            for (target, artifact) in &unit.targets {
+                let hash = from_hex(&artifact.blob).ok_or_else(lost)?;
+                let length = u32::try_from(artifact.bytes).map_err(|_| lost())?;
+                let native = natives.get(&artifact.native).ok_or_else(lost)?.clone();
+                let extension = artifact.extension.clone();
+                let bytes = FileStub { hash, length }.write().into();
+                targets.insert(target.clone(), Artifact { bytes, extension, native });
+            }
+            let unit = Unit { reflection: Arc::new(reflection.clone()), targets };
+            units.insert(name, (from_hex(name).ok_or_else(lost)?, unit));
+        }
+        let mut contents = Contents { shard: self.shard.clone(), ..Contents::default() };
+        for (name, program) in &self.programs {
+            let mut copy = ProgramContents { axes: program.axes.clone(), ..Default::default() };
+            for (language, entries) in &program.entries {
+                for (entry, found) in entries {
+                    let mut filled = EntryContents::default();
+                    for (key, unit) in &found.keys {
+                        let (hash, unit) = units.get(unit).ok_or_else(lost)?;
+                        filled.keys.insert(key.clone(), *hash);
+                        filled.units.entry(*hash).or_insert_with(|| unit.clone());
+                    }
+                    copy.languages.entry(*language).or_default().insert(entry.clone(), filled);
+                }
+            }
+            contents.programs.insert(name.clone(), copy);
+        }
+        Ok(contents)
     }
 
     /// Adds the units of another manifest, with their reflections and natives.

@@ -5,12 +5,18 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
+use serde::Serialize;
+use serde_json::Value;
+
 use super::contents::{checksum, to_json};
 use super::layout::{
-    EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, PROBES, ProgramMeta,
+    EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, NONE, PROBES, ProgramMeta,
     RECORD_BYTES, SLOT_BYTES, TargetMeta, hash_key,
 };
-use super::{Contents, EntryContents, Error, Hash, Unit, VERSION};
+use super::manifest::{FileStub, Manifest};
+use super::program_layout::{EntryKeys, program_layout};
+use super::tree::TreeBuilder;
+use super::{Constant, Contents, EntryContents, Error, Hash, Unit, VERSION};
 use crate::packing;
 use lamplight_files::input;
 use lamplight_files::output::{self, Foreign, Replace};
@@ -25,12 +31,16 @@ const GROUP_BYTES: usize = 256 << 10;
 /// # Errors
 /// [`Error::Io`] where a table is larger than 4 GiB or a blob larger than 16 MiB.
 pub fn pack(contents: &Contents) -> Result<Vec<u8>, Error> {
+    pack_blobs(contents, BlobPlace::Data)
+}
+
+fn pack_blobs(contents: &Contents, place: BlobPlace) -> Result<Vec<u8>, Error> {
     let Contents { programs, shard } = contents;
-    let mut packer = Packer::default();
+    let mut packer = Packer { place, ..Packer::default() };
     packer.meta.shard.clone_from(shard);
     packer.collect_blobs(contents)?;
     for (name, program) in programs {
-        let mut sets = BTreeMap::new();
+        let (mut sets, mut bound) = (BTreeMap::new(), BTreeMap::new());
         let mut entries = Vec::new();
         for (language, entry, contents) in
             program.languages.iter().flat_map(|(language, entries)| {
@@ -39,12 +49,19 @@ pub fn pack(contents: &Contents) -> Result<Vec<u8>, Error> {
         {
             let keys = packer.key_set(&mut sets, contents)?;
             let units = packer.unit_numbers(contents)?;
-            entries.push(EntryMeta { language, name: entry.clone(), keys, units });
+            let grouped = EntryKeys::new(contents.keys.iter().filter_map(|(key, hash)| {
+                Some((key.as_str(), &*contents.units.get(hash)?.reflection))
+            }));
+            let constants = packer.constants(&grouped.constants(&program.axes)?, contents)?;
+            bound.entry(language).or_insert_with(Vec::new).push(grouped);
+            entries.push(EntryMeta { language, name: entry.clone(), keys, units, constants });
         }
-        packer
-            .meta
-            .programs
-            .insert(name.clone(), ProgramMeta { axes: program.axes.clone(), entries });
+        let layouts = bound
+            .into_iter()
+            .map(|(language, entries)| (language, program_layout(&program.axes, &entries)))
+            .collect();
+        let program = ProgramMeta { axes: program.axes.clone(), layouts, entries };
+        packer.meta.programs.insert(name.clone(), program);
     }
     packer.finish()
 }
@@ -84,15 +101,32 @@ pub(super) fn newer_bundle(version: u32) -> String {
     format!("is a bundle of format version {version}, which is newer than version {VERSION}")
 }
 
+/// The index of a directory: the single file without its data. A blob of group [`NONE`] is in the
+/// file that its hash names.
+pub(super) fn pack_index(manifest: &Manifest) -> Result<Vec<u8>, Error> {
+    pack_blobs(&manifest.contents()?, BlobPlace::Files)
+}
+
+/// Where blobs are.
+#[derive(Default, Clone, Copy, PartialEq, Eq)]
+enum BlobPlace {
+    /// In the section DATA.
+    #[default]
+    Data,
+    /// In files. The bytes of an artifact are a [`FileStub`].
+    Files,
+}
+
 #[derive(Default)]
 struct Packer {
+    place: BlobPlace,
     meta: Meta,
     keys: Vec<u8>,
     units: Vec<u8>,
     unit_numbers: BTreeMap<Hash, u32>,
     artifacts: Vec<u8>,
-    texts: Vec<Vec<u8>>,
-    text_numbers: BTreeMap<Vec<u8>, u32>,
+    values: TreeBuilder,
+    value_numbers: BTreeMap<Vec<u8>, u32>,
     blobs: Vec<Arc<[u8]>>,
     blob_numbers: BTreeMap<Hash, u32>,
 }
@@ -129,12 +163,19 @@ impl Packer {
                 bytes.len()
             )));
         }
-        let hash = checksum(bytes);
+        let hash = self.blob_hash(bytes);
         let next = to_u32(self.blobs.len())?;
         if *self.blob_numbers.entry(hash).or_insert(next) == next {
             self.blobs.push(bytes.clone());
         }
         Ok(())
+    }
+
+    fn blob_hash(&self, bytes: &[u8]) -> Hash {
+        match self.place {
+            BlobPlace::Data => checksum(bytes),
+            BlobPlace::Files => FileStub::read(bytes).hash,
+        }
     }
 
     /// Writes the keys of an entry point as a set, unless an earlier entry point of the program has
@@ -186,7 +227,7 @@ impl Packer {
         if let Some(number) = self.unit_numbers.get(hash) {
             return Ok(*number);
         }
-        let reflection = self.text(to_json(&*unit.reflection)?)?;
+        let reflection = self.value(&*unit.reflection)?;
         push_words(
             &mut self.units,
             &[reflection, self.meta.artifacts, to_u32(unit.targets.len())?],
@@ -195,9 +236,12 @@ impl Packer {
             let position =
                 |known: &TargetMeta| known.name == *target && known.extension == artifact.extension;
             let target = to_u32(self.meta.targets.iter().position(position).unwrap_or_default())?;
-            let native = self.text(to_json(&*artifact.native)?)?;
-            let blob =
-                self.blob_numbers.get(&checksum(&artifact.bytes)).copied().unwrap_or_default();
+            let native = self.value(&*artifact.native)?;
+            let blob = self
+                .blob_numbers
+                .get(&self.blob_hash(&artifact.bytes))
+                .copied()
+                .unwrap_or_default();
             push_words(&mut self.artifacts, &[target, native, blob]);
             self.meta.artifacts += 1;
         }
@@ -206,33 +250,59 @@ impl Packer {
         Ok(self.meta.units - 1)
     }
 
-    fn text(&mut self, text: Vec<u8>) -> Result<u32, Error> {
-        let next = to_u32(self.texts.len())?;
-        let found = *self.text_numbers.entry(text.clone()).or_insert(next);
-        if found == next {
-            self.texts.push(text);
+    /// The number of a value in VALUES; equal ones have one number.
+    fn value(&mut self, value: &impl Serialize) -> Result<u32, Error> {
+        let json = to_json(value)?;
+        if let Some(number) = self.value_numbers.get(&json) {
+            return Ok(*number);
         }
-        Ok(found)
+        let number = self.values.add(&to_value(value)?)?;
+        self.value_numbers.insert(json, number);
+        Ok(number)
+    }
+
+    /// Writes the number of the constants of each key, and returns where they start. Nothing where
+    /// no key chooses a constant.
+    fn constants(
+        &mut self,
+        chosen: &BTreeMap<&str, Vec<Constant>>,
+        entry: &EntryContents,
+    ) -> Result<Option<u32>, Error> {
+        if chosen.is_empty() {
+            return Ok(None);
+        }
+        let start = to_u32(self.keys.len())?;
+        for key in entry.keys.keys() {
+            let number = match chosen.get(key.as_str()) {
+                Some(list) => self.value(list)?,
+                None => NONE,
+            };
+            push_words(&mut self.keys, &[number]);
+        }
+        Ok(Some(start))
     }
 
     fn finish(mut self) -> Result<Vec<u8>, Error> {
         let (blobs, data) = self.groups()?;
-        self.meta.texts = to_u32(self.texts.len())?;
+        self.meta.values = to_u32(self.value_numbers.len())?;
         self.meta.blobs = to_u32(self.blobs.len())?;
         self.units.append(&mut self.artifacts);
-        join_sections([
-            to_json(&self.meta)?,
-            self.keys,
-            self.units,
-            text_heap(&self.texts)?,
-            blobs,
-            data,
-        ])
+        let mut meta = TreeBuilder::default();
+        meta.add(&to_value(&self.meta)?)?;
+        join_sections([meta.finish()?, self.keys, self.units, self.values.finish()?, blobs, data])
     }
 
     /// Builds the BLOBS and DATA sections.
     fn groups(&mut self) -> Result<(Vec<u8>, Vec<u8>), Error> {
         let (mut table, mut groups, mut data) = (Vec::new(), Vec::new(), Vec::new());
+        if self.place == BlobPlace::Files {
+            for blob in &self.blobs {
+                let FileStub { hash, length } = FileStub::read(blob);
+                push_words(&mut table, &[NONE, 0, length]);
+                table.extend_from_slice(&hash);
+            }
+            return Ok((table, data));
+        }
         let mut raw = Vec::new();
         let mut members = 0;
         for (index, blob) in self.blobs.iter().enumerate() {
@@ -282,18 +352,6 @@ fn build_slots(keys: &[&str], count: usize) -> Result<Vec<u128>, Error> {
     Ok(slots)
 }
 
-/// A section of texts: the offset and length of each, then the texts.
-fn text_heap(texts: &[Vec<u8>]) -> Result<Vec<u8>, Error> {
-    let mut section = Vec::new();
-    let mut at = texts.len() * 8;
-    for text in texts {
-        push_words(&mut section, &[to_u32(at)?, to_u32(text.len())?]);
-        at += text.len();
-    }
-    texts.iter().for_each(|text| section.extend_from_slice(text));
-    Ok(section)
-}
-
 /// The header and the sections. DATA has no checksum of its own, since each of its groups has one.
 fn join_sections(sections: [Vec<u8>; 6]) -> Result<Vec<u8>, Error> {
     let total = HEADER_BYTES + sections.iter().map(Vec::len).sum::<usize>();
@@ -313,6 +371,10 @@ fn join_sections(sections: [Vec<u8>; 6]) -> Result<Vec<u8>, Error> {
     file.extend_from_slice(&header);
     sections.iter().for_each(|section| file.extend_from_slice(section));
     Ok(file)
+}
+
+fn to_value(value: &impl Serialize) -> Result<Value, Error> {
+    serde_json::to_value(value).map_err(|error| Error::Io(error.to_string()))
 }
 
 fn push_words(bytes: &mut Vec<u8>, words: &[u32]) {

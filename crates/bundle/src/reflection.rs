@@ -55,6 +55,9 @@ pub struct Varying {
     /// Type in WGSL.
     #[serde(rename = "type")]
     pub ty: String,
+    /// The type as numbers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shape: Option<Shape>,
     /// `perspective`, `linear` or `flat`, between stages.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interpolation: Option<String>,
@@ -104,6 +107,12 @@ pub struct Binding {
     /// Whether the shader writes to it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub writable: bool,
+    /// The type of a buffer that is no struct, as numbers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shape: Option<Shape>,
+    /// The type of a texture, as fields.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texture: Option<TextureShape>,
     /// Members of a buffer that is a struct.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub members: Vec<Member>,
@@ -124,9 +133,80 @@ pub struct Member {
     /// The stride of an array.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stride: Option<u32>,
+    /// The type as numbers, except of a struct.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shape: Option<Shape>,
     /// Members of a struct, or of each element of an array of structs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub members: Vec<Member>,
+}
+
+/// A type of numbers, so that no reader has to parse the type's name.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Shape {
+    /// `f32`, `i32`, `u32`, `f16`, or another scalar type of WGSL. `None` for an array whose
+    /// elements are structs or arrays.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scalar: Option<String>,
+    /// Components of a vector, or of each column of a matrix. A scalar has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rows: Option<u32>,
+    /// Columns of a matrix.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub columns: Option<u32>,
+    /// Bytes from one column of a matrix to the next.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub matrix_stride: Option<u32>,
+    /// Elements of an array, of which the other fields describe one; 0 if the buffer decides it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<u32>,
+}
+
+/// What a layout of WebGPU or Vulkan has to know of a texture.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct TextureShape {
+    /// `1d`, `2d`, `2d_array`, `3d`, `cube` or `cube_array`.
+    pub dimension: String,
+    /// Whether a texel has several samples.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub multisampled: bool,
+    /// What is sampled. `None` for a storage texture.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sample_type: Option<SampleType>,
+    /// The format of a storage texture, as in WGSL.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub format: Option<String>,
+    /// How a storage texture is used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub access: Option<Access>,
+}
+
+/// What the texels of a sampled texture are, in the words of WebGPU.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SampleType {
+    /// Floating-point numbers that a sampler may filter.
+    Float,
+    /// Floating-point numbers that no sampler reads, so that formats without filtering are bound too.
+    UnfilterableFloat,
+    /// Depths.
+    Depth,
+    /// Signed integers.
+    Sint,
+    /// Unsigned integers.
+    Uint,
+}
+
+/// How a shader uses a storage texture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Access {
+    /// Only read.
+    Read,
+    /// Only written.
+    Write,
+    /// Both.
+    ReadWrite,
 }
 
 /// A group and a binding.

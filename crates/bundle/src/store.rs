@@ -3,15 +3,20 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::{Axis, Error, Language, Native, Reflection, ShardOrigin};
+use super::{Axis, Error, Language, LayoutBinding, Native, Reflection, ShardOrigin};
 
 /// The part of a bundle that is in memory once it is open, which is small.
 pub type StoredPrograms = BTreeMap<String, StoredProgram>;
+
+/// What the permutations of a program bind together, by language.
+pub type Layouts = BTreeMap<Language, Vec<LayoutBinding>>;
 
 /// One program of an open bundle.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct StoredProgram {
     pub axes: Vec<Axis>,
+    /// What all permutations bind together, by language.
+    pub layouts: Layouts,
     /// Numbers of the entry points, by language and name.
     pub entries: BTreeMap<(Language, String), usize>,
 }

@@ -9,7 +9,8 @@
 )]
 
 mod bundle;
+mod readers;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[bundle::tests])
+    lamplight_testing::run_tests(&[bundle::tests, readers::tests])
 }

@@ -292,6 +292,7 @@ impl Module {
                     location: Some(location),
                     builtin: None,
                     ty,
+                    shape: None,
                     interpolation: interpolation.map(str::to_owned),
                     sampling: perspective.map(str::to_owned),
                 });

@@ -30,6 +30,7 @@ mod remainder;
 mod rename;
 mod sample_mask;
 mod setters;
+mod shapes;
 mod short_storage;
 mod slots;
 mod specialise;

@@ -5,6 +5,7 @@ use naga::valid::{FunctionInfo, GlobalUse};
 use naga::{AddressSpace, GlobalVariable, Handle, ImageClass, Module, Type, TypeInner};
 
 use super::names::{builtin_name, interpolation_name, sampling_name, type_name};
+use super::shapes::{is_filtering, shape_of, texture_shape};
 use super::specialise;
 use lamplight_bundle::{Binding, BindingKind, Member, Override, Pair, Place, Reflection, Varying};
 use lamplight_diagnostic::{Diagnostic, codes};
@@ -115,6 +116,7 @@ fn make_varying(
         location: None,
         builtin: None,
         ty: type_name(module, ty),
+        shape: shape_of(module, ty),
         interpolation: None,
         sampling: None,
     };
@@ -132,8 +134,14 @@ fn make_varying(
 }
 
 fn used_bindings(module: &Module, info: &FunctionInfo, layouter: &Layouter) -> Vec<Binding> {
+    let is_filtered = |image| {
+        let mut keys = info.sampling_set.iter();
+        keys.any(|key| key.image == image && is_filtering(module, key.sampler))
+    };
     let mut found: Vec<Binding> = used_globals(module, info)
-        .filter_map(|(handle, variable)| make_binding(module, info[handle], variable, layouter))
+        .filter_map(|(handle, variable)| {
+            make_binding(module, (info[handle], is_filtered(handle)), variable, layouter)
+        })
         .collect();
     found.sort_by_key(|binding| (binding.group, binding.binding));
     found
@@ -149,7 +157,7 @@ pub(super) fn used_globals<'a>(
 
 fn make_binding(
     module: &Module,
-    usage: GlobalUse,
+    (usage, is_filtered): (GlobalUse, bool),
     variable: &GlobalVariable,
     layouter: &Layouter,
 ) -> Option<Binding> {
@@ -168,6 +176,8 @@ fn make_binding(
         count: binding_count(module, variable.ty),
         size: is_buffer.then(|| layouter[element].size),
         writable: usage.contains(GlobalUse::WRITE),
+        shape: if is_buffer { shape_of(module, element) } else { None },
+        texture: texture_shape(module, element, is_filtered),
         members: if is_buffer { struct_members(module, element, layouter) } else { Vec::new() },
     })
 }
@@ -227,6 +237,7 @@ fn make_member(module: &Module, member: &naga::StructMember, layouter: &Layouter
         offset: member.offset,
         size: layouter[member.ty].size,
         stride,
+        shape: shape_of(module, member.ty),
         members: struct_members(module, member.ty, layouter),
     }
 }

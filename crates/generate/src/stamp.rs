@@ -23,7 +23,7 @@ pub enum Look {
 /// The latter differs from machine to machine, so it is never in a bundle.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct BundleStamp {
-    /// The hash of its file, or of its manifest and the names of its blobs.
+    /// The hash of its file, or of its manifest, its index and the names of its blobs.
     content: String,
     /// The hash of the size, the times and the identity of each blob; empty for a single file,
     /// whose content is read in any case.
@@ -43,7 +43,9 @@ impl BundleStamp {
             return Some(Self { content: hex(&content), blobs: String::new() });
         }
         let mut content = blake3::Hasher::new();
-        content.update(&input::read_file(&out.join("manifest.json"), MOST_BYTES).ok()?);
+        for name in ["manifest.json", "index.bin"] {
+            content.update(&input::read_file(&out.join(name), MOST_BYTES).ok()?);
+        }
         let entries = fs::read_dir(out.join("blobs")).ok()?;
         let files = entries.map(|entry| {
             let entry = entry.ok()?;

@@ -12,7 +12,7 @@ pub const LANGUAGE: KeyLanguage =
     KeyLanguage { name: "c", about: "a header for C99 and C++", write };
 
 /// Keywords of both languages that are valid names of axes.
-const KEYWORDS: &[&str] = &[
+pub const KEYWORDS: &[&str] = &[
     "and",
     "asm",
     "auto",

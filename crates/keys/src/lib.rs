@@ -7,6 +7,7 @@
 //! permutations do not differ in them. With a lock file, there are also functions from keys to the
 //! numbers that this file gives them, and back.
 
+pub mod bindings;
 mod c;
 mod names;
 mod ordinal;

@@ -12,7 +12,7 @@ pub const LANGUAGE: KeyLanguage =
     KeyLanguage { name: "rust", about: "a module a program, for any edition", write };
 
 /// Keywords that are valid names of axes. `r#` would not work for all of them.
-const KEYWORDS: &[&str] = &[
+pub const KEYWORDS: &[&str] = &[
     "Self", "abstract", "as", "async", "await", "become", "box", "crate", "do", "dyn", "enum",
     "extern", "final", "gen", "impl", "in", "macro", "match", "mod", "move", "mut", "priv", "pub",
     "ref", "self", "static", "super", "trait", "try", "type", "typeof", "unsafe", "unsized", "use",

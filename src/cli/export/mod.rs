@@ -17,12 +17,13 @@ use crate::output;
 use crate::project::LIBRARY;
 use crate::source::Files as _;
 
-/// Write the shader library for other tools.
+/// Write the shader library for other tools, or the readers of bundles.
 #[derive(Args)]
 pub struct Arguments {
     /// The folder to write to. Give it to a compiler as its include path: `glslangValidator -IDIR`.
     folder: PathBuf,
-    /// What to write: the library's files, or a package that is ready to publish.
+    /// What to write: the library's files, a package that is ready to publish, or the headers that
+    /// read bundles.
     #[arg(long, value_enum, default_value_t)]
     form: ExportForm,
     #[command(flatten)]
@@ -38,6 +39,8 @@ enum ExportForm {
     Cargo,
     /// `DIR/lamplight`: an npm package that exports a `weslBundle`, and also contains the GLSL.
     Npm,
+    /// `DIR/include`: headers that read bundles in C and C++.
+    C,
 }
 
 /// Path below the package's folder and text.
@@ -46,6 +49,14 @@ type PackageContents = BTreeMap<String, String>;
 const LICENSES: [(&str, &str); 2] = [
     ("LICENSE-MIT", include_str!("../../../LICENSE-MIT")),
     ("LICENSE-APACHE", include_str!("../../../LICENSE-APACHE")),
+];
+
+/// The reader of bundles in C.
+const HEADERS: [(&str, &str); 4] = [
+    ("lamplight.h", include_str!("../../../include/lamplight.h")),
+    ("lamplight_gl.h", include_str!("../../../include/lamplight_gl.h")),
+    ("lamplight_vk.h", include_str!("../../../include/lamplight_vk.h")),
+    ("lamplight_zstd.h", include_str!("../../../include/lamplight_zstd.h")),
 ];
 
 /// Keywords for search. The first three are the community's for shader packages.
@@ -60,6 +71,7 @@ pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
         ExportForm::Npm => {
             (npm::NAME, npm::npm_contents(library_modules()?, library_texts(&["glsl"])?))
         }
+        ExportForm::C => ("include", headers()),
     };
     let files: PackageContents =
         contents.into_iter().map(|(path, text)| (format!("{name}/{path}"), text)).collect();
@@ -67,6 +79,10 @@ pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
     output::write_folder(&arguments.folder, files_as_bytes, arguments.overwrite.replace())?;
     let folder = arguments.folder.join(name);
     Ok(writeln!(stdout(), "{}: {} files", folder.display(), files.len())?)
+}
+
+fn headers() -> PackageContents {
+    HEADERS.into_iter().map(|(path, text)| (path.to_owned(), text.to_owned())).collect()
 }
 
 fn exported_files() -> Result<PackageContents, Failure> {

@@ -73,8 +73,11 @@ fn published() -> Result<Vec<Published>, Failed> {
 /// The files that a package should have: those of the repository in its folder, without tests and, for
 /// the root, without other packages and what only the repository needs.
 fn wanted_files(folder: &str, files: &[String]) -> BTreeSet<String> {
-    let is_of_root =
-        |file: &&str| file.starts_with("src/") || OF_ROOT.contains(file) || LICENCES.contains(file);
+    let is_of_root = |file: &&str| {
+        ["src/", "include/"].iter().any(|start| file.starts_with(start))
+            || OF_ROOT.contains(file)
+            || LICENCES.contains(file)
+    };
     let mut wanted: BTreeSet<String> = match folder {
         "" => files.iter().map(String::as_str).filter(is_of_root).map(str::to_owned).collect(),
         _ => {

@@ -57,14 +57,21 @@ impl Packed {
             groups.spend(self.group_record(group)?.2)?;
         }
         let lengths = self.blob_lengths()?;
-        let (mut units, mut texts) =
-            (Budget::new(self.bytes.len(), "units"), Budget::new(self.bytes.len(), "texts"));
+        let (mut units, mut values) =
+            (Budget::new(self.bytes.len(), "units"), Budget::new(self.bytes.len(), "values"));
+        let weights = Tree::new(self.section(VALUES)?, "values")?.weights()?;
+        let weight = |index: u32| {
+            let weight = weights.get(index as usize).copied();
+            weight.ok_or_else(|| Error::corrupt("values", "a number is out of range"))
+        };
+        // A value takes about as many bytes as this in the words of JSON.
+        let bytes = |weight: u64| usize::try_from(weight.saturating_mul(16)).unwrap_or(usize::MAX);
         for unit in 0..self.meta.units {
             let (reflection, first, count) = self.unit_record(unit)?;
-            texts.spend(self.text_length(reflection)?)?;
+            values.spend(bytes(weight(reflection)?))?;
             for artifact in first..first + count {
                 let (_, native, blob) = self.artifact_record(artifact)?;
-                texts.spend(self.text_length(native)?)?;
+                values.spend(bytes(weight(native)?))?;
                 let length = lengths.get(blob as usize).copied();
                 units.spend(
                     length.ok_or_else(|| Error::corrupt("blobs", "a number is out of range"))?,
@@ -83,11 +90,6 @@ impl Packed {
             }
         }
         Ok(())
-    }
-
-    fn text_length(&self, index: u32) -> Result<usize, Error> {
-        u32_at(self.section(TEXTS)?, index as usize * RECORD_BYTES + 4, "texts")
-            .map(|length| length as usize)
     }
 
     /// The length of each blob. Blobs must follow each other through the groups, and none may

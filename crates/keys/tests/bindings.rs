@@ -1,0 +1,213 @@
+//! Bindings compile in each language, and their compilers confirm the offsets of the reflection.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use lamplight_bundle::{Bundle, Error};
+use lamplight_keys::bindings::{self, Request};
+use libtest_mimic::{Failed, Trial};
+
+type Outcome = Result<(), Failed>;
+
+/// A language, the file that includes its bindings, and the command that compiles this file.
+struct Harness {
+    name: &'static str,
+    language: &'static str,
+    file: &'static str,
+    main: (&'static str, &'static str),
+    command: &'static [&'static str],
+}
+
+const C_MAIN: &str = "#include \"lit.h\"
+#include <stdio.h>
+int main(void)
+{
+    lit_camera camera = {{{0}}, {{0}}};
+    lit_lamps lamps = {{{{0}, 0}}};
+    lamps.all[1].kind = LIT_LAMPS_BINDING;
+    printf(\"%d %d %d\\n\", (int)(sizeof camera + sizeof lamps), LIT_INPUT_POSITION,
+           (int)(sizeof good_bundle > 1000));
+    return 0;
+}
+";
+
+const CPP_MAIN: &str = "#include \"lit.h\"
+#include <cstdio>
+int main()
+{
+    lit::camera camera{};
+    lit::lamps lamps{};
+    lamps.all[1].kind = lit::LAMPS_BINDING;
+    std::printf(\"%d %d %d\\n\", int(sizeof camera + sizeof lamps), int(lit::INPUT_POSITION),
+                int(sizeof good_bundle > 1000));
+}
+";
+
+const RUST_MAIN: &str = "mod made { include!(\"lit.rs\"); }
+fn main() {
+    let camera = made::lit::Camera::default();
+    let mut lamps = made::lit::Lamps::ZERO;
+    lamps.all[1].kind = made::lit::LAMPS.1;
+    let bytes = camera.as_bytes().len() + lamps.as_bytes().len();
+    println!(\"{bytes} {} {}\", made::lit::INPUT_POSITION, (made::GOOD_BUNDLE.len() > 1000) as u32);
+}
+";
+
+const WARNINGS: &[&str] = &["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
+
+const HARNESSES: [Harness; 5] = [
+    Harness {
+        name: "gcc_c99",
+        language: "c",
+        file: "lit.h",
+        main: ("main.c", C_MAIN),
+        command: &["gcc", "-std=c99"],
+    },
+    Harness {
+        name: "clang_c11",
+        language: "c",
+        file: "lit.h",
+        main: ("main.c", C_MAIN),
+        command: &["clang", "-std=c11"],
+    },
+    Harness {
+        name: "gcc_cpp11",
+        language: "cpp",
+        file: "lit.h",
+        main: ("main.cpp", CPP_MAIN),
+        command: &["g++", "-std=c++11"],
+    },
+    Harness {
+        name: "clang_cpp17",
+        language: "cpp",
+        file: "lit.h",
+        main: ("main.cpp", CPP_MAIN),
+        command: &["clang++", "-std=c++17"],
+    },
+    Harness {
+        name: "rust",
+        language: "rust",
+        file: "lit.rs",
+        main: ("main.rs", RUST_MAIN),
+        command: &["rustc", "--edition", "2024", "-Dwarnings", "-Cdebuginfo=0"],
+    },
+];
+
+pub fn tests() -> Vec<Trial> {
+    let mut tests: Vec<Trial> = HARNESSES
+        .iter()
+        .map(|harness| {
+            Trial::test(format!("bindings::compile::{}", harness.name), || compiles(harness))
+        })
+        .collect();
+    tests.extend(HARNESSES.iter().map(|harness| {
+        let name = format!("bindings::other_layouts_do_not_compile::{}", harness.name);
+        Trial::test(name, || refuses(harness))
+    }));
+    tests.push(Trial::test("bindings::typescript", typescript));
+    tests.push(Trial::test("bindings::unknown_programs_are_named", unknown));
+    tests
+}
+
+fn bundle() -> Result<Bundle, Error> {
+    Bundle::open(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/bundles/good"))
+}
+
+fn written(language: &str) -> Result<String, Failed> {
+    let language = bindings::find(language).ok_or("no such language")?;
+    let bytes = [7; 2000];
+    let programs = ["lit".to_owned()];
+    let request =
+        Request { programs: &programs, source: None, embedded: Some(("good_bundle", &bytes)) };
+    Ok(bindings::write(&bundle()?, &request, language)?)
+}
+
+/// Compiles the file of a harness with these bindings, and returns what the program prints.
+fn compiled(harness: &Harness, text: &str) -> Result<String, Failed> {
+    let folder = tempfile::tempdir()?;
+    let at = |name: &str| -> PathBuf { folder.path().join(name) };
+    std::fs::write(at(harness.file), text)?;
+    std::fs::write(at(harness.main.0), harness.main.1)?;
+    let mut command = Command::new(harness.command[0]);
+    command.args(&harness.command[1..]).arg(at(harness.main.0)).arg("-o").arg(at("main"));
+    if harness.language != "rust" {
+        command.args(WARNINGS);
+    }
+    let output = command.output()?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
+    }
+    let output = Command::new(at("main")).output()?;
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// 112 bytes of `camera` and the 80 of the larger of both `lamps`; the location 0; a bundle.
+fn compiles(harness: &Harness) -> Outcome {
+    let said = compiled(harness, &written(harness.language)?)?;
+    if said.trim() == "192 0 1" { Ok(()) } else { Err(format!("it prints `{said}`").into()) }
+}
+
+/// Without the padding of a matrix's columns, or with a field of another size, it does not compile.
+fn refuses(harness: &Harness) -> Outcome {
+    let text = written(harness.language)?;
+    let changes = match harness.language {
+        "rust" => [("[[f32; 4]; 3]", "[[f32; 3]; 3]"), ("kind: u32", "kind: u64")],
+        _ => [("normal[3][4]", "normal[3][3]"), ("uint32_t kind", "uint64_t kind")],
+    };
+    for (right, wrong) in changes {
+        if !text.contains(right) {
+            return Err(format!("there is no `{right}` in {text}").into());
+        }
+        if compiled(harness, &text.replace(right, wrong)).is_ok() {
+            return Err(format!("`{wrong}` compiles").into());
+        }
+    }
+    Ok(())
+}
+
+/// `tsc` of the site, where it is installed, takes the types; where it is not, this says so.
+fn typescript() -> Outcome {
+    let text = written("ts")?;
+    for part in
+        ["export type LitCamera = {", "\"normal\": ArrayLike<number>;", "Partial<LitLamp>[]"]
+    {
+        if !text.contains(part) {
+            return Err(format!("there is no `{part}` in {text}").into());
+        }
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let compiler = root.join("site/node_modules/.bin/tsc");
+    if !compiler.exists() {
+        println!(
+            "bindings::typescript: no compiler in site/node_modules, the types are not checked"
+        );
+        return Ok(());
+    }
+    let folder = tempfile::tempdir()?;
+    let place = folder.path().join("node_modules/@lamplight");
+    std::fs::create_dir_all(&place)?;
+    let package = root.join("packages/bundle").canonicalize()?;
+    std::os::unix::fs::symlink(package, place.join("bundle"))?;
+    let main = "import { litCameraBytes } from \"./lit.js\";
+export const bytes: ArrayBuffer = litCameraBytes({ normal: [1, 2, 3, 4, 5, 6, 7, 8, 9] });\n";
+    std::fs::write(folder.path().join("lit.ts"), &text)?;
+    std::fs::write(folder.path().join("main.ts"), main)?;
+    let mut command = Command::new(compiler);
+    command.current_dir(folder.path()).args(["--strict", "--noEmit", "--target", "es2022"]);
+    command.args(["--module", "nodenext", "--moduleResolution", "nodenext", "main.ts"]);
+    let output = command.output()?;
+    if output.status.success() {
+        return Ok(());
+    }
+    Err(String::from_utf8_lossy(&output.stdout).into_owned().into())
+}
+
+fn unknown() -> Outcome {
+    let language = bindings::find("c").ok_or("no such language")?;
+    let programs = ["lot".to_owned()];
+    let request = Request { programs: &programs, ..Request::default() };
+    match bindings::write(&bundle()?, &request, language) {
+        Err(error) if error.to_string().contains("it has: blank, lit, write") => Ok(()),
+        other => Err(format!("{other:?}").into()),
+    }
+}
