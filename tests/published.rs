@@ -4,6 +4,18 @@
 //!
 //! `pcf_random16_hpg` is not here, since it needs a shadow map: see `shadow::random_taps_shift`.
 
+mod geometry;
+mod hpg;
+mod listing;
+mod listings;
+mod numbers;
+mod oglpg;
+mod page;
+mod quantities;
+mod sampling;
+mod stated;
+mod tutorials;
+
 use std::process::Command;
 
 use libtest_mimic::{Failed, Trial};
@@ -85,6 +97,10 @@ pub fn tests() -> Vec<Trial> {
         .map(|language| {
             Trial::test(format!("published::{language}"), move || forms_differ(language))
         })
+        .chain(listings::tests())
+        .chain(page::tests())
+        .chain(quantities::tests())
+        .chain(stated::tests())
         .collect()
 }
 

@@ -200,6 +200,12 @@ fn shown(
         println!("{} on {backend}: its fragments are those of frames/shipped/gtao", preset.name);
         return Ok(());
     }
+    // The listing takes its noise from a large sine, of which no driver promises a digit.
+    // `published::hpg_6_pcf_random` compares what does not depend on it.
+    if preset.key == "example=hpg_6_random" {
+        println!("{} on {backend}: its noise is another one on each driver", preset.name);
+        return Ok(());
+    }
     let tally = recomputed(painter, &plan, language)?;
     println!("{} on {backend}: {tally}", preset.name);
     Ok(())

@@ -7,6 +7,7 @@ use lamplight::bundle::Language;
 use lamplight::catalogue::preset::Preset;
 use lamplight::picture::Pass;
 use lamplight::picture::frame::Stages;
+use lamplight::scene::sets::LampKind;
 use libtest_mimic::{Failed, Trial};
 use naga::proc::TypeResolution;
 use naga::{Expression, Function, Module, TypeInner};
@@ -18,6 +19,7 @@ use super::{library, plan, rendered};
 /// them: their numbers must agree with maps and lists that are made of the scene.
 const STRUCTURES: &[(&str, &str, &[&str])] = &[
     ("Object", "object", &["world_from_object", "normal_from_object"]),
+    ("Lamp", "light", &["light", "half_vector"]),
     ("Light", "light", &["kind", "shadow_layer"]),
     ("Area", "area", &[]),
     ("Profile", "profile", &["uv_from_world", "right", "share", "scale", "offset"]),
@@ -62,7 +64,7 @@ fn numbers_read(preset: &Preset) -> Result<BTreeSet<(&'static str, String)>, Str
     let before = plan.passes.len() - 1 - last.needs.seen_before();
     let is_map = |pass: &Pass| ["depth", "moments"].contains(&&*pass.program);
     let has_map = plan.passes[..before].iter().any(is_map);
-    let is_of_spot = !preset.key.contains("shadow_light=");
+    let is_of_spot = last.needs.caster.is_none_or(|kind| kind == LampKind::Spot);
     let has_moments = plan.passes.iter().any(|pass| pass.program == "moments");
     let of_map = BIAS.iter().filter(|_| has_map && !has_moments);
     let of_spot = FRUSTUM.iter().filter(|_| has_map && is_of_spot);

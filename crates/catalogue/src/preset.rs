@@ -27,7 +27,8 @@
 //! Every number that the permutation reads is in one or the other; those of the blocks `cascades`,
 //! `clusters`, `probes` and `room` are neither, since they must agree with maps and lists that are
 //! made of the scene. `deviations` says how the picture differs from the example, and why. It is
-//! empty if it does not differ.
+//! empty if it does not differ. `safe` is the key of `forward` for the same example in the form that
+//! is safe to use, if the preset draws what is printed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -67,20 +68,37 @@ pub struct Preset {
     pub open: BTreeSet<String>,
     /// How the picture differs from the example: one or more sentences for each difference.
     pub deviations: Vec<String>,
+    /// The key of [`SAFE`] that draws the example in the form that is safe to use, if the preset
+    /// draws it as it is printed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub safe: Option<String>,
 }
 
-/// The prefix of presets that show a technique instead of an example from a book, and the heading
-/// of these presets.
-const TECHNIQUES: (&str, &str) = ("tech_", "Techniques of today");
+/// The program that draws examples in the form that is safe to use.
+pub const SAFE: &str = "forward";
+
+/// The headings of presets, by the prefixes of their names: the authors of the work that they are
+/// from, or what those have in common that show a technique instead of an example from a book.
+const WORKS: [(&str, &str); 5] = [
+    ("oglpg_", "Kessenich, Sellers, Shreiner"),
+    ("hpg_", "Movania et al."),
+    ("ncl_", "Newcastle University"),
+    ("igl_", "Igalia"),
+    ("tech_", "Techniques of today"),
+];
 
 impl Preset {
-    /// The work that it is from, without the place in the work. All techniques are together.
+    /// The authors of the work that it is from. All techniques are together.
     pub fn work(&self) -> &str {
-        let (prefix, title) = TECHNIQUES;
-        if self.name.starts_with(prefix) {
-            return title;
-        }
-        self.source.split(", ").next().unwrap_or_default()
+        let known = WORKS.iter().find(|(prefix, _)| self.name.starts_with(prefix));
+        known.map_or_else(|| self.source.split(", ").next().unwrap_or_default(), |(_, work)| work)
+    }
+
+    /// The example in the form that is safe to use, with the same scene and numbers.
+    #[must_use]
+    pub fn safe_form(&self) -> Option<Self> {
+        let key = self.safe.clone()?;
+        Some(Self { program: SAFE.to_owned(), key, safe: None, ..self.clone() })
     }
 }
 
@@ -166,6 +184,7 @@ struct PresetEntry {
     #[serde(default)]
     open: Vec<Spanned<String>>,
     deviations: Vec<String>,
+    safe: Option<Spanned<String>>,
 }
 
 #[derive(Deserialize)]
@@ -227,6 +246,9 @@ impl Checker<'_> {
         for pass in &entry.passes {
             self.permutation(&pass.program, &pass.key);
         }
+        if let Some(safe) = &entry.safe {
+            self.permutation(&Spanned::new(safe.span(), SAFE.to_owned()), safe);
+        }
         let groups = [
             ("object", entry.object),
             ("light", entry.light),
@@ -263,6 +285,7 @@ impl Checker<'_> {
                 .collect(),
             open: entry.open.into_iter().map(Spanned::into_inner).collect(),
             deviations: entry.deviations,
+            safe: entry.safe.map(Spanned::into_inner),
         }
     }
 

@@ -10,7 +10,7 @@ use crate::plan::{Pass, Plan, known_program};
 use crate::strip::Comparison;
 use crate::{Shot, strip};
 use lamplight_bundle::Language;
-use lamplight_catalogue::preset::Preset;
+use lamplight_catalogue::preset::{Preset, SAFE};
 use lamplight_diagnostic::{Diagnostics, escape_markup};
 use lamplight_execute::Session;
 use lamplight_scenes::sets;
@@ -270,7 +270,10 @@ pub fn markdown_page(cards: &[&Card], strips: &[StripCard]) -> String {
     let mut text =
         "# Gallery\n\nEvery published example and every comparison. `lamplight render --all` \
                     draws them large, beside a page that has the\ncomposed texts too. The site has \
-                    that page under `gallery/`.\n"
+                    that page under `gallery/`.\n\nPictures are coded as sRGB. The listings of the \
+                    books write linear numbers to the frame buffer\nas they are: the first ball of \
+                    `oglpg_7_1` has the colour (0.82, 0.26, 0.2), which is\n(209, 66, 51) in their \
+                    frame buffers, and (234, 139, 124) here.\n"
             .to_owned();
     text.push_str("\n## Comparisons\n");
     strips.iter().for_each(|card| write_strip(&mut text, card));
@@ -338,6 +341,10 @@ fn write_section(text: &mut String, card: &Card) {
         let anchor = program.replace('_', "-");
         let _ = writeln!(text, "- [{program}](../catalogue/programs.md#{anchor}): `{key}`");
     }
+    if let Some(key) = &preset.safe {
+        let key = key.replace(',', ", ");
+        let _ = writeln!(text, "- safe form: [{SAFE}](../catalogue/programs.md#{SAFE}): `{key}`");
+    }
     let functions: Vec<String> =
         card.functions("..").map(|(name, page)| format!("[{name}]({page})")).collect();
     if !functions.is_empty() {
@@ -384,7 +391,7 @@ pre { overflow: auto; padding: .6rem .8rem; border: 1px solid var(--edge); borde
 </head>
 <body>
 <h1>Gallery</h1>
-<p><code>lamplight render --all</code> draws every published example and every comparison. Each picture is a link to its large form.</p>
+<p><code>lamplight render --all</code> draws every published example and every comparison. Each picture is a link to its large form. Pictures are coded as sRGB, where the listings of the books write linear numbers as they are: (0.82, 0.26, 0.2) is (209, 66, 51) there, and (234, 139, 124) here.</p>
 ";
 
 /// Where the page of HTML finds the documentation, since it can be anywhere.
@@ -457,6 +464,11 @@ fn write_article(text: &mut String, card: &Card, first: &Card) {
         card.functions(DOCS).map(|(name, page)| html_link(&page, name)).collect();
     if !functions.is_empty() {
         let _ = writeln!(text, "<li>functions: {}</li>", functions.join(", "));
+    }
+    if let Some(key) = &preset.safe {
+        let page = html_link(&format!("{DOCS}/catalogue/programs.md#{SAFE}"), SAFE);
+        let key = escape_markup(&key.replace(',', ", "));
+        let _ = writeln!(text, "<li>safe form: {page}: <code>{key}</code></li>");
     }
     write_facts(text, card);
     for file in first.files() {

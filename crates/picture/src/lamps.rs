@@ -84,7 +84,8 @@ impl UniformValues<'_> {
     /// How many lamps shine: those of the scene, as far as the array has room. `None` if the
     /// program has no lamps.
     pub fn lamps(&self) -> Option<usize> {
-        let most = usize::try_from(self.lit.integer(LAMPS)?).ok()?;
+        let axis = self.lit.integer(LAMPS).and_then(|most| usize::try_from(most).ok());
+        let most = axis.or(self.lit.needs.room)?;
         Some(self.scene.lamps.len().min(most))
     }
 
@@ -106,6 +107,12 @@ impl UniformValues<'_> {
                 LampKind::Point => 2.0,
                 LampKind::Spot => 3.0,
             }],
+            // Unless a source has colours of their own for them, highlights have the lamp's.
+            "specular" => match self.plan.number("light", "color") {
+                Some(color) => color,
+                None => vector_values(self.intensity(index, lamp, kind)),
+            },
+            "half_vector" => vector_values(self.half_vector(index, lamp, kind)),
             "color" => vector_values(self.intensity(index, lamp, kind)),
             // The lamps of a model have no ambient part.
             "ambient" if given.is_some() => vec![0.0; 3],
@@ -134,6 +141,15 @@ impl UniformValues<'_> {
         } else {
             lamp.axis()
         }
+    }
+
+    /// Where the light of one direction has its highlight, for a viewer infinitely far away.
+    fn half_vector(&self, index: usize, lamp: &Lamp, kind: LampKind) -> DVec3 {
+        let eye = &self.scene.eye;
+        let viewer = (eye.position - eye.target).normalize_or(DVec3::Z);
+        let published = self.plan.number("light", "axis").and_then(|axis| vector_of(&axis));
+        let axis = published.unwrap_or_else(|| self.axis(index, lamp, kind));
+        (viewer - axis).normalize_or(viewer)
     }
 
     /// The intensity with which the lamp's colour arrives at the target, whatever the falloff is.

@@ -36,6 +36,7 @@
 //! permutation, or an expression over the library's functions that is computed for every pixel
 //! (`crates/picture/src/strip/`).
 
+pub mod beside;
 mod controls;
 pub mod figure;
 pub mod frame;

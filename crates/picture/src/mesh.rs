@@ -25,19 +25,29 @@ pub fn object_mesh(
     });
     let shape: &Shape = own.as_ref().unwrap_or(&object.shape);
     let indices = own.as_ref().map_or(indices, |own| own.indices.clone());
-    let words = |corner: &Vertex| {
+    let words = |(index, corner): (usize, &Vertex)| {
         let one = |attribute: &VertexAttribute| {
-            corner_numbers(
-                corner,
-                attribute.location,
-                object.material_index,
-                component_count(*attribute),
-            )
+            let count = component_count(*attribute);
+            match attribute.location {
+                MIDDLE => number_words(face_middle(shape, index).extend(0.0).to_array(), count),
+                location => corner_numbers(corner, location, object.material_index, count),
+            }
         };
         attributes.iter().flat_map(one).collect::<Vec<u32>>()
     };
-    let words = shape.vertices.iter().flat_map(words).collect();
+    let words = shape.vertices.iter().enumerate().flat_map(words).collect();
     Mesh { attributes, words, indices }
+}
+
+/// The location of the middle of a face. `programs/published.wesl` reads it.
+const MIDDLE: u32 = 7;
+
+/// The middle of the face that a corner of a faceted shape belongs to. Faces of such shapes share
+/// no corners.
+fn face_middle(shape: &Shape, corner: usize) -> DVec3 {
+    let first = corner - corner % 3;
+    let face = shape.vertices.iter().skip(first).take(3);
+    face.map(|vertex| vertex.position).sum::<DVec3>() / 3.0
 }
 
 /// The attributes that the stage reads, in its order.
@@ -74,5 +84,9 @@ fn corner_numbers(corner: &Vertex, location: u32, material: u32, count: usize) -
         5 => corner.tangent.to_array(),
         _ => return vec![material; count],
     };
+    number_words(numbers, count)
+}
+
+fn number_words(numbers: [f64; 4], count: usize) -> Vec<u32> {
     numbers.iter().take(count).map(|number| (*number as f32).to_bits()).collect()
 }

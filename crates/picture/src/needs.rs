@@ -55,6 +55,8 @@ pub struct Needs {
     pub reach: f64,
     /// The kind of all lamps. With `None` lamps keep the kinds that the scene gives them.
     pub lamps: Option<LampKind>,
+    /// How many lamps the program has room for, if no axis says so.
+    pub room: Option<usize>,
     /// The kind of the lamp that casts the shadow.
     pub caster: Option<LampKind>,
     pub falloff: Falloff,
@@ -143,6 +145,7 @@ struct NeedsRow {
     seen: Vec<String>,
     reach: Option<f64>,
     lamps: Option<LampKind>,
+    room: Option<usize>,
     caster: Option<LampKind>,
     falloff: Option<Falloff>,
     shape: Option<LampShape>,
@@ -278,6 +281,7 @@ impl Needs {
         self.seen.extend(seen.collect::<Vec<_>>());
         self.reach = row.reach.unwrap_or(self.reach);
         self.lamps = row.lamps.or(self.lamps);
+        self.room = row.room.or(self.room);
         self.caster = row.caster.or(self.caster);
         self.falloff = row.falloff.unwrap_or(self.falloff);
         self.shape = row.shape.or(self.shape);

@@ -39,12 +39,12 @@ pub const ZOOM: u32 = 3;
 /// Panels in a row. More would be too narrow on a page to read their labels.
 const ACROSS: u32 = 4;
 /// Pixels between panels, and the height of a label.
-const GAP: u32 = 6;
-const LABEL: u32 = 28;
+pub(crate) const GAP: u32 = 6;
+pub(crate) const LABEL: u32 = 28;
 /// Pixels to the left and right of a label's words.
-const MARGIN: u32 = 6;
+pub(crate) const MARGIN: u32 = 6;
 /// The colour of the background.
-const GROUND: [u8; 3] = [24, 26, 30];
+pub(crate) const GROUND: [u8; 3] = [24, 26, 30];
 /// The colour of the frame around the part that is enlarged.
 const FRAME: [u8; 3] = [255, 208, 64];
 
@@ -273,7 +273,7 @@ pub fn place_words([x, y]: [f64; 2], size: [u32; 2]) -> [u32; 2] {
 const INK: Rgb888 = Rgb888::new(232, 234, 238);
 
 /// Writes one line from a place to the right, as far as the width allows.
-fn write_label(picture: &mut Picture, text: &str, [left, top]: [u32; 2], width: u32) {
+pub(crate) fn write_label(picture: &mut Picture, text: &str, [left, top]: [u32; 2], width: u32) {
     let mut page = LabelCanvas { picture, right: left + width };
     let style = MonoTextStyle::new(&FONT_10X20, INK);
     let place = Point::new(left as i32, top as i32);

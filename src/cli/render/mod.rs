@@ -28,6 +28,7 @@ use crate::model::View;
 use crate::output;
 use crate::permute::manifest::Program;
 use crate::permute::{Assignment, Quoted, Setting, key};
+use crate::picture::beside;
 use crate::picture::frame::Programs;
 use crate::picture::gallery::SAMPLES;
 use crate::picture::strip::{self, Comparison};
@@ -63,6 +64,10 @@ pub struct Arguments {
     /// Draw every comparison.
     #[arg(long, conflicts_with_all = ["preset", "set", "program", "scene", "cascades", "all"])]
     comparisons: bool,
+    /// Draw a listing as it is printed, beside its safe form and the difference of the two.
+    #[arg(long, requires = "preset", conflicts_with_all = ["set", "program", "scene", "model", "all",
+        "comparisons", "cascades"])]
+    beside: bool,
     /// The file of the picture [default: the name of the preset, or `render.png`]; with `--all` and
     /// `--comparisons`, a folder [default: `gallery`].
     #[arg(short, long = "out", alias = "output", value_name = "FILE")]
@@ -133,6 +138,9 @@ fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {
     }
     if let Some(comparison) = named_comparison(&programs, arguments)? {
         return draw_comparison(&programs, arguments, &comparison, &shot, entry);
+    }
+    if arguments.beside {
+        return draw_beside(&programs, arguments, &shot, entry);
     }
     let plan = make_plan(&programs, arguments)?;
     let painter = executor::open_executor(entry)?;
@@ -212,6 +220,27 @@ fn draw_comparison(
     Ok(writeln!(stdout(), "{path}: {count} panels in {seconds:.2} s, {adapter}")?)
 }
 
+/// Draws a listing beside its safe form.
+fn draw_beside(
+    programs: &Programs,
+    arguments: &Arguments,
+    shot: &Shot,
+    entry: &ExecutorEntry,
+) -> Result<(), Failure> {
+    let name = arguments.preset.as_deref().unwrap_or_default();
+    let (presets, probes) = library_examples(programs)?;
+    let Some(preset) = presets.iter().find(|preset| preset.name == name) else {
+        return Err(unknown_name("preset", name, presets.iter().map(|one| one.name.as_str())));
+    };
+    let painter = executor::open_executor(entry)?;
+    let start = Instant::now();
+    let picture = beside::draw_beside(painter.as_ref(), programs, preset, &probes, shot)
+        .map_err(|problems| input_failure(programs, problems))?;
+    let path = write_picture(arguments, &picture)?;
+    let (path, seconds) = (path.display(), start.elapsed().as_secs_f64());
+    Ok(writeln!(stdout(), "{path}: {name} in {seconds:.2} s, {}", painter.adapter())?)
+}
+
 fn input_failure(programs: &Programs, problems: Diagnostics) -> Failure {
     Failure::Input(programs.texts(), problems)
 }
@@ -253,6 +282,7 @@ fn of_preset(programs: &Programs, arguments: &Arguments, name: &str) -> Result<P
         let known = presets.iter().map(|preset| preset.name.as_str()).chain(compared);
         return Err(unknown_name("preset", name, known));
     };
+    let preset = &chosen_form(programs, arguments, preset);
     let plan = Plan::of_preset(programs, preset, &probes)
         .map_err(|problems| input_failure(programs, problems))?;
     if arguments.set.is_empty() && arguments.program.is_none() {
@@ -267,6 +297,18 @@ fn of_preset(programs: &Programs, arguments: &Arguments, name: &str) -> Result<P
         (program.name == preset.program).then_some(preset.key.as_str()),
     )?;
     Ok(Plan { passes: changed.passes, ..plan })
+}
+
+/// The preset, or its safe form if that has the axes or the program that are chosen, and the form as
+/// it is printed has not.
+fn chosen_form(programs: &Programs, arguments: &Arguments, preset: &Preset) -> Preset {
+    let name = arguments.program.as_deref().unwrap_or(&preset.program);
+    let has_axis = |program: &Program, axis: &str| program.space.axis(axis).is_some();
+    let own = programs.manifest().program(name).filter(|own| own.name == preset.program);
+    let fits = own.is_some_and(|own| arguments.set.iter().all(|(axis, _)| has_axis(own, axis)));
+    let is_asked = |safe: &Preset| arguments.program.is_none() || safe.program == name;
+    let safe = preset.safe_form().filter(|safe| !fits && is_asked(safe));
+    safe.unwrap_or_else(|| preset.clone())
 }
 
 /// Presets and light probes of the library.

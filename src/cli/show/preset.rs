@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::ShownItem;
-use crate::catalogue::preset::{Preset, PresetPass};
+use crate::catalogue::preset::{Preset, PresetPass, SAFE};
 use crate::catalogue::probe::{ORDER, Probe};
 use crate::cli::text::{rows_text, wrap_words};
 
@@ -13,6 +13,12 @@ pub fn show_preset(preset: &Preset) -> ShownItem {
     facts.extend(preset.passes.iter().map(|pass| vec!["first".to_owned(), permutation_text(pass)]));
     facts.push(vec!["program".to_owned(), preset.program.clone()]);
     facts.push(vec!["key".to_owned(), preset.key.replace(',', ", ")]);
+    facts.extend(
+        preset
+            .safe
+            .iter()
+            .map(|key| vec!["safe form".to_owned(), format!("{SAFE} {}", key.replace(',', ", "))]),
+    );
     facts.push(vec!["scene".to_owned(), preset.scene.clone()]);
     facts.extend(preset.probe.iter().map(|probe| vec!["light probe".to_owned(), probe.clone()]));
     let about = format!("{} {}", preset.doc, preset.look);
@@ -50,6 +56,7 @@ pub fn preset_json(preset: &Preset) -> Value {
         "source": preset.source,
         "program": preset.program,
         "key": preset.key,
+        "safe": preset.safe,
         "scene": preset.scene,
         "probe": preset.probe,
         "passes": preset.passes,

@@ -54,7 +54,12 @@ pub fn scene() -> Scene {
 
 /// Earth with patches of grass. The other maps are those of bricks.
 fn hill_textures() -> Maps {
-    let base = TextureMap::of(512, |at| {
+    Maps { base: earth_map(512), ..maps::bricks() }
+}
+
+/// Earth with patches of grass, of so many texels along an edge.
+pub(super) fn earth_map(side: usize) -> TextureMap {
+    TextureMap::of(side, |at| {
         let lumpy_noise = |cells| 0.5 + 0.5 * maps::value_noise(at, cells);
         let fine = lumpy_noise(60);
         let tone = 0.8 + 0.25 * fine + 0.15 * lumpy_noise(170);
@@ -62,6 +67,5 @@ fn hill_textures() -> Maps {
         let grass = ((lumps + 0.25 * (fine - 0.5) - 0.46) / 0.1).clamp(0.0, 1.0);
         let color = DVec3::new(0.6, 0.45, 0.3).lerp(DVec3::new(0.34, 0.45, 0.16), grass);
         (color * tone).extend(1.0)
-    });
-    Maps { base, ..maps::bricks() }
+    })
 }

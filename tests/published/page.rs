@@ -1,0 +1,135 @@
+//! `docs/published.md`: for each listing whether it is drawn as printed, and how far its safe form is
+//! from it.
+//!
+//! The evaluator draws the pictures, so the page is the same everywhere. By day, the test computes some
+//! of its rows again, and all with `UPDATE_EXPECT=1`.
+
+use std::fmt::Write as _;
+
+use glam::DVec3;
+use lamplight::bundle::Language;
+use lamplight::catalogue::preset::Preset;
+use lamplight::execute::Session;
+use lamplight::picture::{Linear, prepare_passes};
+use libtest_mimic::{Failed, Trial};
+
+use super::listings::{SIZE, agreement, is_published};
+use super::quantities::{disagreements, published_tables};
+use crate::render::{library, on_device, plan, rendered, shot};
+use crate::{is_whole, snapshot};
+
+const HEAD: &str = "\
+# The published listings, as printed
+
+The program `published` computes what four sources print, term by term, with their flaws. Each row is
+a listing. Numbers that its text gives are in `shaderlib/published.toml`, and a test compares them with
+the preset. A picture of 96 by 72 pixels was drawn by the evaluator. Of the pixels that show a surface,
+at least 500 were compared with a model of the listing in f64, which was written from the text alone.
+A pixel agrees if each channel is within 1 % of the model, or of a hundredth of white if that is more.
+\"Undefined\" are pixels where the source's language leaves the value undefined.
+
+The last columns say how far the safe form of the library is from the printed one, as the display shows
+both: the share of the pixels that differ by more than 1 % of white, and the largest difference of a
+channel. `lamplight render PRESET --beside` draws both and their difference. Drivers draw the same
+pictures in both languages in the tests `published::*` and `render/*`, and the outputs for all targets
+in `frames/shipped/published/*`.
+
+| listing | section | numbers | agree | undefined | deviations | safe form: pixels | largest |
+|---|---|---|---|---|---|---|---|
+";
+
+/// By day, every so many rows are computed again.
+const STEP: usize = 12;
+/// Differences that can be seen, of white.
+const VISIBLE: f64 = 0.01;
+
+pub fn tests() -> Vec<Trial> {
+    vec![Trial::test("published::page", || on_page().map_err(Failed::from))]
+}
+
+fn on_page() -> Result<(), String> {
+    let file = snapshot::root().join("docs/published.md");
+    let presets: Vec<&Preset> =
+        library().presets.iter().filter(|preset| is_published(preset)).collect();
+    if std::env::var_os("UPDATE_EXPECT").is_some() {
+        let rows = presets.iter().map(|preset| row_of(preset)).collect::<Result<String, _>>()?;
+        return std::fs::write(&file, format!("{HEAD}{rows}")).map_err(|error| error.to_string());
+    }
+    let page = std::fs::read_to_string(&file).map_err(|error| error.to_string())?;
+    let rows = page.strip_prefix(HEAD).ok_or("the head of docs/published.md is another one")?;
+    let rows: Vec<&str> = rows.lines().collect();
+    if rows.len() != presets.len() {
+        return Err(format!("{} rows for {} listings", rows.len(), presets.len()));
+    }
+    let step = if is_whole() { 1 } else { STEP };
+    for (row, preset) in rows.iter().zip(&presets).step_by(step) {
+        let found = row_of(preset)?;
+        if found.trim_end() != *row {
+            return Err(format!(
+                "docs/published.md has\n{row}\nfound\n{found}cargo xtask record published::page writes it"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The row of a listing.
+fn row_of(preset: &'static Preset) -> Result<String, String> {
+    let tables = published_tables()?;
+    let table = tables.get(&preset.name).ok_or("a listing without numbers")?;
+    let numbers = match disagreements(preset, table).len() {
+        0 => format!("all {}", table.quantities.len()),
+        wrong => format!("{wrong} of {} wrong", table.quantities.len()),
+    };
+    let mut row = String::new();
+    on_device("eval", |painter| {
+        let found = agreement(painter, preset, Language::Wesl)?;
+        let defined = found.compared - found.undefined;
+        let [pixels, largest] = match preset.safe_form() {
+            Some(safe) => distance(painter, preset, &safe)?,
+            None => [String::new(), String::new()],
+        };
+        let name = &preset.name;
+        let link = format!("[{name}](gallery/README.md#{name})");
+        writeln!(
+            row,
+            "| {link} | {} | {numbers} | {} of {defined} | {} | {} | {pixels} | {largest} |",
+            table.section,
+            found.agreeing,
+            found.undefined,
+            preset.deviations.len(),
+        )
+        .map_err(|error| error.to_string())
+    })
+    .map_err(|failed| format!("{failed:?}"))?;
+    Ok(row)
+}
+
+/// How far two forms are from each other: the share of pixels, and the largest difference.
+fn distance(painter: &dyn Session, printed: &Preset, safe: &Preset) -> Result<[String; 2], String> {
+    let (printed, safe) = (drawn(painter, printed)?, drawn(painter, safe)?);
+    let [width, height] = SIZE;
+    let (mut count, mut differing, mut largest) = (0, 0, 0.0_f64);
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let shown = |picture: &Linear| picture.drawn(x, y).map(visible);
+        let Some((a, b)) = shown(&printed).zip(shown(&safe)) else { continue };
+        let difference = (a - b).abs().max_element();
+        count += 1;
+        differing += usize::from(difference > VISIBLE);
+        largest = largest.max(difference);
+    }
+    let share = 100.0 * f64::from(differing as u32) / f64::from(count.max(1));
+    Ok([format!("{share:.1} %"), format!("{largest:.2}")])
+}
+
+/// What a display can show.
+fn visible(color: DVec3) -> DVec3 {
+    let parts = color.to_array().map(|part| if part.is_nan() { 0.0 } else { part });
+    DVec3::from_array(parts).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
+fn drawn(painter: &dyn Session, preset: &Preset) -> Result<Linear, String> {
+    let (plan, shot) = (plan(preset)?, shot(SIZE, 1, Language::Wesl));
+    let prepared = prepare_passes(painter, &library().programs, &plan, &shot).map_err(rendered)?;
+    prepared.photograph(painter, &shot).map_err(rendered)
+}
