@@ -17,8 +17,8 @@ use super::{
 /// An open bundle of either form. Cheap to share between threads.
 ///
 /// ```no_run
-/// # fn main() -> Result<(), lamplight::bundle::Error> {
-/// use lamplight::bundle::{Bundle, Target};
+/// # fn main() -> Result<(), lamplight_bundle::Error> {
+/// use lamplight_bundle::{Bundle, Target};
 ///
 /// let bundle = Bundle::open("shaders.lamplight")?;
 /// let shader = bundle.program("forward")?.shader("fs_main")?;

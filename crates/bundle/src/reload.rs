@@ -20,8 +20,8 @@ impl Bundle {
     /// Those of [`Bundle::open`].
     ///
     /// ```no_run
-    /// # fn main() -> Result<(), lamplight::bundle::Error> {
-    /// let mut bundle = lamplight::bundle::Bundle::open("live.lamplight")?;
+    /// # fn main() -> Result<(), lamplight_bundle::Error> {
+    /// let mut bundle = lamplight_bundle::Bundle::open("live.lamplight")?;
     /// for change in bundle.reload()?.permutations {
     ///     println!("{} {} `{}`: {}", change.program, change.entry, change.key, change.kind);
     /// }
