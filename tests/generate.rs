@@ -27,7 +27,7 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 23] = [
+    let cases: [Case; 24] = [
         ("comments_and_layout_go_and_nothing_else", layout),
         ("a_second_run_does_nothing", nothing_to_do),
         ("an_edit_compiles_what_it_reaches", edits),
@@ -38,6 +38,7 @@ pub fn tests() -> Vec<Trial> {
         ("damaged_bundles_are_noticed_and_repaired", damaged::bundles),
         ("mistakes_come_from_the_cache_in_their_new_place", mistakes),
         ("check_compares", check),
+        ("a_rule_names_what_was_read", rules),
         ("shards_merge_to_the_whole", shards),
         ("shards_run_under_gnu_parallel", parallel),
         ("missing_and_foreign_shards_are_noticed", wrong_shards),
@@ -53,6 +54,26 @@ pub fn tests() -> Vec<Trial> {
         ("a_redis_server_that_is_stopped_changes_nothing", stopped_server),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("generate::{name}"), case)).collect()
+}
+
+/// The rule of `--depfile` names the bundle, the manifest and every module, also in a run with a
+/// warm cache; and a run that has nothing to do writes it where it is missing.
+fn rules() -> Outcome {
+    let package = Package::new()?;
+    for out in ["bundle", "one.lamplight"] {
+        let arguments = ["-o", out, "--depfile", "rule.d"];
+        package.generate(&arguments)?;
+        let rule = fs::read_to_string(package.path().join("rule.d"))?;
+        let target = if out == "bundle" { "bundle/manifest.json" } else { out };
+        ensure(rule.starts_with(&format!("{target}:")), &rule)?;
+        for file in ["lamplight.toml", "small.wesl", "tint.wesl", "small.vert.glsl"] {
+            ensure(rule.contains(file), format!("the rule has no {file}: {rule}"))?;
+        }
+        fs::remove_file(package.path().join("rule.d"))?;
+        package.generate(&arguments)?;
+        equal(fs::read_to_string(package.path().join("rule.d"))?, rule)?;
+    }
+    Ok(())
 }
 
 /// A lean text has no comments and no layout, and is otherwise unchanged. Otherwise two texts with

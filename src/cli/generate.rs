@@ -1,6 +1,7 @@
 //! `lamplight gen`: the bundle of a manifest.
 
 use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
@@ -40,6 +41,9 @@ pub struct Arguments {
     /// of them, or a selection that has each distinct line.
     #[arg(long, value_enum, num_args = 0..=1, default_value = "none", default_missing_value = "all")]
     validate: ValidatedOutputs,
+    /// Also write a rule for make or ninja: the bundle, and every file that was read.
+    #[arg(long, value_name = "FILE", conflicts_with = "check")]
+    depfile: Option<PathBuf>,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
@@ -51,9 +55,18 @@ pub fn run_generate(arguments: Arguments, form: DiagnosticForm) -> Result<(), Fa
     let request = make_request(&arguments, &mut work.sources);
     work.validate(arguments.validate.into());
     let look = if arguments.check { Look::Whole } else { Look::Cheap };
-    let mut summary = match work.up_to_date(&request, look, form) {
+    // Only a run knows what it reads. A rule that is there is still right if nothing changed.
+    let has_rule = arguments.depfile.as_deref().is_none_or(Path::exists);
+    let known = if has_rule { work.up_to_date(&request, look, form) } else { None };
+    let mut summary = match known {
         Some(trace) => work.validate_bundle(trace)?,
-        None => work.run(&request, arguments.check, form)?,
+        None => {
+            let summary = work.run(&request, arguments.check, form)?;
+            if let Some(path) = &arguments.depfile {
+                work.write_rule(path)?;
+            }
+            summary
+        }
     };
     summary.seconds = start.elapsed().as_secs_f64();
     match arguments.json {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::cached::Cached;
+use super::compile::write_depfile;
 use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::overwrite::{Overwrite, Patience, write_failure};
 use super::partial;
@@ -128,6 +129,13 @@ impl Work {
     fn validators(&mut self) -> (Option<&Validators>, Inputs<'_>) {
         let Self { sources, packages, manifest, cache, validators, .. } = self;
         (validators.as_ref(), Inputs { sources, packages, manifest, cache: cache.as_ref() })
+    }
+
+    /// Writes a rule for make: the bundle, and the files that the last run read.
+    pub fn write_rule(&self, path: &Path) -> Result<(), Failure> {
+        let is_single = is_file(&self.out);
+        let output = if is_single { self.out.clone() } else { self.out.join("manifest.json") };
+        write_depfile(path, std::iter::once(output), &self.sources, self.replace)
     }
 
     /// Whether files are still as they were when they were read.

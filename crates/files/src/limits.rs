@@ -220,6 +220,10 @@ limits! {
         "memory, time", "the bundle is damaged";
     BUNDLE_FACTOR: u64 = 128, Count, "further such bytes for each byte of its file", "memory, time",
         "the bundle is damaged";
+    BUNDLE_VALUES: u32 = 1 << 22, Count, "values in one reflection of a bundle, or in its list of programs",
+        "memory, time: equal ones are stored once", "the bundle is damaged";
+    BUNDLE_NESTING: u32 = 64, Count, "depth of nested values in a bundle", "the stack",
+        "the bundle is damaged";
     ENVIRONMENT_BYTES: u64 = 128 << 20, Bytes, "bytes of a Radiance file", "memory",
         "has ... bytes, more than the ... that are allowed";
     ENVIRONMENT_PIXELS: u64 = 1 << 24, Count, "pixels of the image, by its header", "memory",

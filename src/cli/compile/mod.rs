@@ -6,6 +6,7 @@ mod files;
 mod target;
 
 pub use conventions::{ConventionArguments, parse_convention};
+pub use depfile::write_depfile;
 pub use files::file_ending;
 pub use target::{TargetChoice, parse_target, wanted_one, wanted_targets};
 
@@ -88,7 +89,7 @@ pub fn run_compile(arguments: Arguments, form: DiagnosticForm) -> Result<(), Fai
     match &arguments.depfile {
         Some(path) => {
             let outputs = made.iter().map(|file| folder.join(&file.name));
-            depfile::write_depfile(path, outputs, &sources, arguments.overwrite.replace())
+            write_depfile(path, outputs, &sources, arguments.overwrite.replace())
         }
         None => Ok(()),
     }

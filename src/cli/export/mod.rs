@@ -39,7 +39,7 @@ enum ExportForm {
     Cargo,
     /// `DIR/lamplight`: an npm package that exports a `weslBundle`, and also contains the GLSL.
     Npm,
-    /// `DIR/include`: headers that read bundles in C and C++.
+    /// `DIR/lamplight_c`: headers that read bundles in C and C++, and a package for CMake.
     C,
 }
 
@@ -51,12 +51,13 @@ const LICENSES: [(&str, &str); 2] = [
     ("LICENSE-APACHE", include_str!("../../../LICENSE-APACHE")),
 ];
 
-/// The reader of bundles in C.
-const HEADERS: [(&str, &str); 4] = [
-    ("lamplight.h", include_str!("../../../include/lamplight.h")),
-    ("lamplight_gl.h", include_str!("../../../include/lamplight_gl.h")),
-    ("lamplight_vk.h", include_str!("../../../include/lamplight_vk.h")),
-    ("lamplight_zstd.h", include_str!("../../../include/lamplight_zstd.h")),
+/// The reader of bundles in C, and what makes bundles in a build with CMake.
+const HEADERS: [(&str, &str); 5] = [
+    ("cmake/LamplightConfig.cmake", include_str!("../../../cmake/LamplightConfig.cmake")),
+    ("include/lamplight.h", include_str!("../../../include/lamplight.h")),
+    ("include/lamplight_gl.h", include_str!("../../../include/lamplight_gl.h")),
+    ("include/lamplight_vk.h", include_str!("../../../include/lamplight_vk.h")),
+    ("include/lamplight_zstd.h", include_str!("../../../include/lamplight_zstd.h")),
 ];
 
 /// Keywords for search. The first three are the community's for shader packages.
@@ -71,7 +72,7 @@ pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
         ExportForm::Npm => {
             (npm::NAME, npm::npm_contents(library_modules()?, library_texts(&["glsl"])?))
         }
-        ExportForm::C => ("include", headers()),
+        ExportForm::C => ("lamplight_c", headers()),
     };
     let files: PackageContents =
         contents.into_iter().map(|(path, text)| (format!("{name}/{path}"), text)).collect();
@@ -82,7 +83,7 @@ pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
 }
 
 fn headers() -> PackageContents {
-    HEADERS.into_iter().map(|(path, text)| (path.to_owned(), text.to_owned())).collect()
+    HEADERS.into_iter().chain(LICENSES).map(|(path, text)| (path.into(), text.into())).collect()
 }
 
 fn exported_files() -> Result<PackageContents, Failure> {

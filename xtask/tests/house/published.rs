@@ -74,7 +74,7 @@ fn published() -> Result<Vec<Published>, Failed> {
 /// the root, without other packages and what only the repository needs.
 fn wanted_files(folder: &str, files: &[String]) -> BTreeSet<String> {
     let is_of_root = |file: &&str| {
-        ["src/", "include/"].iter().any(|start| file.starts_with(start))
+        ["src/", "include/", "cmake/"].iter().any(|start| file.starts_with(start))
             || OF_ROOT.contains(file)
             || LICENCES.contains(file)
     };

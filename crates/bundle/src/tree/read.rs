@@ -14,13 +14,7 @@ use super::{
 };
 use crate::Error;
 use crate::layout::{slice_at, u32_at};
-
-/// The most values that one root may have, with those that are referred to more than once counted
-/// each time: a few hundred times what the largest reflections have.
-const MOST_VALUES: u32 = 1 << 22;
-
-/// The most lists and records that a value may be in.
-const MOST_DEPTH: u32 = 64;
+use lamplight_files::limits::{BUNDLE_NESTING, BUNDLE_VALUES};
 
 /// A tree in memory. Positions are checked where they are used.
 #[derive(Clone, Copy)]
@@ -72,7 +66,7 @@ impl<'a> Tree<'a> {
     /// A root, as a value of Rust.
     pub fn get<T: DeserializeOwned>(&self, root: u32) -> Result<T, Error> {
         let value = u32_at(self.roots, root as usize * 4, self.part)?;
-        let left = Cell::new(MOST_VALUES);
+        let left = Cell::new(BUNDLE_VALUES);
         T::deserialize(self.node(value, &left))
             .map_err(|Refusal(reason)| Error::corrupt(self.part, reason))
     }
@@ -139,7 +133,7 @@ impl<'t> Node<'t> {
         if at >= self.before {
             return Err(Refusal("a value is not before what it is in".to_owned()));
         }
-        if self.depth >= MOST_DEPTH {
+        if self.depth >= BUNDLE_NESTING {
             return Err(Refusal("values are nested too deeply".to_owned()));
         }
         let start = (at as usize).saturating_mul(4);
