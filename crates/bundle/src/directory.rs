@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use super::contents::{checksum, from_hex, refuse_control_characters, to_hex};
 use super::layout::MOST_GROUP_BYTES;
-use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit};
+use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit, blob_file_name};
 use super::pack::pack_index;
 use super::store::{self, Store, StoredArtifact, StoredProgram, StoredPrograms};
-use super::{Axis, Error, Hash, Native, Reflection, ShardOrigin, Stage};
+use super::{Axis, Error, Hash, Native, Reflection, ShardOrigin, Stage, file};
 use lamplight_files::input;
 
 pub(super) const MANIFEST: &str = "manifest.json";
@@ -207,6 +207,23 @@ impl Directory {
     }
 }
 
+impl Directory {
+    /// Refuses the index of another bundle that is not whole.
+    fn verify_other_index(&self, index: Vec<u8>) -> Result<(), Error> {
+        for (blob, extension) in file::from_bytes(index)?.outputs()? {
+            let name = blob_file_name(&blob, &extension)
+                .ok_or_else(|| Error::corrupt(INDEX, format!("`{blob}` does not name a blob")))?;
+            let part = format!("{BLOBS}/{name}");
+            let bytes = input::read_file(&self.blobs.join(&name), MOST_GROUP_BYTES as u64)
+                .map_err(|error| Error::Io(format!("{part}: {error}")))?;
+            if to_hex(&checksum(&bytes)) != blob {
+                return Err(Error::corrupt(part, "the checksum does not match"));
+            }
+        }
+        Ok(())
+    }
+}
+
 /// How many blobs a thread reads at least.
 const LEAST_PART: u32 = 64;
 
@@ -295,7 +312,8 @@ impl Store for Directory {
             .map_err(|error| Error::Io(format!("{INDEX}: {error}")))?;
         match index == pack_index(&read_manifest(&self.path)?)? {
             true => Ok(()),
-            false => Err(Error::corrupt(INDEX, format!("it is not that of {MANIFEST}"))),
+            // A run that was stopped between the two has left the index of the next bundle.
+            false => self.verify_other_index(index),
         }
     }
 }

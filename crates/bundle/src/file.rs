@@ -5,7 +5,7 @@ mod bytes;
 mod verify;
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -197,6 +197,15 @@ impl Packed {
             return Err(Error::corrupt("keys", "an index is out of range"));
         }
         u32_at(keys, entry.units as usize + index * 4, "keys")
+    }
+
+    /// Of each output: the hash of its bytes in hexadecimal, and the extension of its file.
+    pub(super) fn outputs(&self) -> Result<BTreeSet<(String, String)>, Error> {
+        let outputs = (0..self.meta.artifacts).map(|artifact| {
+            let (target, _, blob) = self.artifact_record(artifact)?;
+            Ok((self.digest(blob)?, target.extension.clone()))
+        });
+        outputs.collect()
     }
 
     /// A value of the section VALUES.

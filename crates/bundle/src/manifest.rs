@@ -99,7 +99,8 @@ impl ManifestArtifact {
     }
 }
 
-fn blob_file_name(blob: &str, extension: &str) -> Option<String> {
+/// The file of a blob below `blobs/`.
+pub fn blob_file_name(blob: &str, extension: &str) -> Option<String> {
     let is_hex = blob.len() == 32 && blob.bytes().all(|byte| byte.is_ascii_hexdigit());
     let mut parts = extension.split('.');
     let is_part =
