@@ -13,7 +13,7 @@
 ///
 /// Parameters: `base` surface's linear colour, [0, 1]; `diffuse`, `specular` linear colours read from the maps, at least 0; `dp`, `sp` their shares, [0, 1].
 /// Returns: `c = mix(base, diffuse*base, dp)`, then `mix(c, specular + c, sp)`, linear, not clamped.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.13.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.13.
 /// Edges: `base` where `dp` and `sp` are both 0; no parameter is clamped, so shares outside [0, 1] extrapolate.
 /// Error model: absolute 2*2^-23*(|base|*(1 + |diffuse|) + |specular|).
 vec3 ibl_mix(vec3 base, vec3 diffuse, vec3 specular, float dp, float sp) {
@@ -27,7 +27,7 @@ vec3 ibl_mix(vec3 base, vec3 diffuse, vec3 specular, float dp, float sp) {
 ///
 /// Parameters: `view_rot` rotation from world to eye space; `n`, `v` unit, eye space, `v` away from the surface.
 /// Returns: unit vector, world space.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.13, with the rotation added.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.13, with the rotation added.
 /// Edges: the transpose of a `view_rot` that is not a rotation is not its inverse; the direction `-v` for a zero `n`, zero for a zero `v`.
 /// Error model: absolute 8*2^-23 per component.
 vec3 reflect_world(mat3 view_rot, vec3 n, vec3 v) {

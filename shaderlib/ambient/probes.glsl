@@ -14,7 +14,7 @@
 ///
 /// Parameters: none.
 /// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, table 7.1.
 /// Edges: none.
 /// Error model: exact: the published digits.
 vec3[9] probe_breezeway() {
@@ -35,7 +35,7 @@ vec3[9] probe_breezeway() {
 ///
 /// Parameters: none.
 /// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, table 7.1.
 /// Edges: none.
 /// Error model: exact: the published digits.
 vec3[9] probe_campus_sunset() {
@@ -56,7 +56,7 @@ vec3[9] probe_campus_sunset() {
 ///
 /// Parameters: none.
 /// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, table 7.1.
 /// Edges: none.
 /// Error model: exact: the published digits.
 vec3[9] probe_eucalyptus_grove() {
@@ -77,7 +77,7 @@ vec3[9] probe_eucalyptus_grove() {
 ///
 /// Parameters: none.
 /// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, table 7.1.
 /// Edges: none.
 /// Error model: exact: the published digits.
 vec3[9] probe_funston_beach_sunset() {
@@ -98,7 +98,7 @@ vec3[9] probe_funston_beach_sunset() {
 ///
 /// Parameters: none.
 /// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, table 7.1.
 /// Edges: none.
 /// Error model: exact: the published digits.
 vec3[9] probe_galileos_tomb() {
@@ -119,7 +119,7 @@ vec3[9] probe_galileos_tomb() {
 ///
 /// Parameters: none.
 /// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, table 7.1.
 /// Edges: none.
 /// Error model: exact: the published digits.
 vec3[9] probe_grace_cathedral() {
@@ -140,7 +140,7 @@ vec3[9] probe_grace_cathedral() {
 ///
 /// Parameters: none.
 /// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, table 7.1.
 /// Edges: none.
 /// Error model: exact: the published digits.
 vec3[9] probe_old_town_square() {
@@ -161,7 +161,7 @@ vec3[9] probe_old_town_square() {
 ///
 /// Parameters: none.
 /// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.14.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.14.
 /// Edges: none.
 /// Error model: exact: the published digits.
 vec3[9] probe_old_town_square_6_digits() {
@@ -182,7 +182,7 @@ vec3[9] probe_old_town_square_6_digits() {
 ///
 /// Parameters: none.
 /// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, table 7.1.
 /// Edges: none.
 /// Error model: exact: the published digits.
 vec3[9] probe_st_peters_basilica() {
@@ -203,7 +203,7 @@ vec3[9] probe_st_peters_basilica() {
 ///
 /// Parameters: none.
 /// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, table 7.1.
 /// Edges: none.
 /// Error model: exact: the published digits.
 vec3[9] probe_uffizi_gallery() {
@@ -224,7 +224,7 @@ vec3[9] probe_uffizi_gallery() {
 ///
 /// Parameters: none.
 /// Returns: nine linear RGB coefficients of the radiance, ordered L00, L1m1, L10, L11, L2m2, L2m1, L20, L21, L22.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, table 7.1.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, table 7.1.
 /// Edges: none.
 /// Error model: exact: the published digits.
 vec3[9] probe_vine_street_kitchen() {

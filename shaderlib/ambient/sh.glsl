@@ -18,7 +18,7 @@
 ///
 /// Parameters: `n` unit normal in the space of the coefficients; `sh` nine linear RGB coefficients of any sign.
 /// Returns: irradiance, linear; may be below 0 for an environment of strong contrast.
-/// Source: Ramamoorthi, Hanrahan, "An Efficient Representation for Irradiance Environment Maps", 2001, equation 13; Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, equation 7.1 and example 7.14.
+/// Source: Ramamoorthi, Hanrahan, "An Efficient Representation for Irradiance Environment Maps", 2001, equation 13; Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, equation 7.1 and example 7.14.
 /// Edges: a zero `n` gives `0.886227*L00 - 0.247708*L20`.
 /// Error model: absolute 12*2^-23 of the sum of the terms' magnitudes.
 vec3 sh9_irradiance(vec3 n, vec3 sh[9]) {

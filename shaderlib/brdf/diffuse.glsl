@@ -14,7 +14,7 @@
 ///
 /// Parameters: `n`, `l` unit, one space, `l` away from the surface.
 /// Returns: `max(n.l, 0)`, in [0, 1].
-/// Source: Lambert, Photometria, 1760; Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.3.
+/// Source: Lambert, Photometria, 1760; Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.3.
 /// Edges: 0 where the light is behind the surface, and where `n` or `l` is zero.
 /// Error model: absolute 1.5*2^-23*sum|n_i*l_i|.
 float lambert(vec3 n, vec3 l) {

@@ -33,7 +33,7 @@ float phong(vec3 n, vec3 l, vec3 v, float s) {
 ///
 /// Parameters: `n` unit at the vertices, as interpolated and not normalised again; `l`, `v` unit, the space of `n`, away from the surface; `s` shininess, at least 0.
 /// Returns: `max(pow(r.v, s), 0)` with `r = reflect(-l, n)`, at least 0 where r.v is above 0.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.21.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.21.
 /// Edges: indeterminate where r.v is below 0, and at 0 for an `s` of 0 or below; r.v is 0 where `l` or `v` is zero, and r is `-l` for a zero `n`.
 /// Error model: that of `phong` where r.v is above 0, none elsewhere.
 float phong_oglpg_7_21(vec3 n, vec3 l, vec3 v, float s) {
@@ -61,7 +61,7 @@ float phong_igl(vec3 n, vec3 l, vec3 v, float s) {
 ///
 /// Parameters: `n`, `h` unit, one space; `n_dot_l` cosine n.l, [-1, 1]; `s` shininess, at least 0.
 /// Returns: `max(n.h, 0)^s`, in [0, 1]; 0 where `n_dot_l <= 0`.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.3: the half vector is a uniform, the highlight is 0 where the diffuse term is.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.3: the half vector is a uniform, the highlight is 0 where the diffuse term is.
 /// Edges: 0 where `n_dot_l` is 0 or below: the light is at or behind the horizon; 1 in front for an `s` of 0, and a negative `s` counts as 0; 0 where `n` or `h` is zero and `s` is above 0.
 /// Error model: that of `safe_pow(n.h, s)`; n.h has absolute error 3*2^-23.
 float blinn_phong_half(vec3 n, vec3 h, float n_dot_l, float s) {

@@ -15,7 +15,7 @@
 ///
 /// Parameters: `d` distance to the light, scene units, at least 0; `k` constant, linear and quadratic coefficients (1, 1/unit, 1/unit^2), at least 0.
 /// Returns: `1 / (k.x + k.y*d + k.z*d*d)`: in (0, 1] where `k.x` is at least 1, above 1 where the polynomial is below 1.
-/// Source: Shreiner, Sellers, Kessenich, Licea-Kane, OpenGL Programming Guide, 8th edition, 2013, example 7.4.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.4.
 /// Edges: 1 where the polynomial is below 2^-126, so where it is 0 or negative: a `k` of zeros means no attenuation; a negative `d` is not clamped.
 /// Error model: 2.5 ULP (division) + 3 ULP (sum and products of terms of at least 0).
 float polynomial(float d, vec3 k) {

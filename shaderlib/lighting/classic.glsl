@@ -30,7 +30,7 @@ struct Accum {
 ///
 /// Parameters: `accum` sums so far; `material` reflectances; `light` colours and strength; `lit` factors at the point; `ambient` factor on ambient light, [0, 1]; `diffuse` and `specular` terms of the reflection, at least 0, as from `lambert` and `blinn_phong`; `visibility` unshadowed share, [0, 1].
 /// Returns: sums with the light's terms added, linear.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, examples 7.8 and 7.10.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, examples 7.8 and 7.10.
 /// Edges: if `lit` comes from `sample_light`, a light that is off adds nothing but its ambient light, which is 0 if `ambient` is 0; no parameter is clamped.
 /// Error model: 4 ULP + absolute 8*2^-23 of the largest term.
 Accum accumulate(
@@ -54,7 +54,7 @@ Accum accumulate(
 ///
 /// Parameters: `base` the surface's linear colour, [0, 1]; `material` its `emission` is read; `accum` the loop's sums.
 /// Returns: `emission + base*scattered + reflected`, linear, not clamped.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, examples 7.8 and 7.10, without their clamp to 1.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, examples 7.8 and 7.10, without their clamp to 1.
 /// Edges: no parameter is clamped: negative sums take light away.
 /// Error model: 2 ULP + absolute 2^-23, beside the sums' own errors.
 vec3 resolve(vec3 base, Material material, Accum accum) {
@@ -91,7 +91,7 @@ vec3 shade_ncl(vec3 base, vec3 color, vec3 n, vec3 l, vec3 v, float attenuation)
 ///
 /// Parameters: `ambient`, `diffuse`, `specular` linear reflected colours; `power` exponent, at least 0; `n`, `l`, `v` as for `phong_oglpg_7_21`; `visibility` the shadow lookup, [0, 1].
 /// Returns: `ambient + visibility*(diffuse*max(n.l, 0) + specular*phong)`, linear, not clamped.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.21.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.21.
 /// Edges: as `phong_oglpg_7_21`: indeterminate where the mirrored ray points away from the viewer, highlights behind the surface.
 /// Error model: that of `phong_oglpg_7_21` on the highlight + 3 ULP of the sum of terms.
 vec3 shade_oglpg_7_21(

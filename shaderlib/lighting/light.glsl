@@ -72,7 +72,7 @@ struct LightSample {
 ///
 /// Parameters: `light` the light: its `axis` is read.
 /// Returns: `l` against the axis, distance 0, factors 1.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.3.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.3.
 /// Edges: `l` is zero for a zero axis.
 /// Error model: that of `safe_normalize` for `l`; exact for the rest.
 LightSample sample_directional(Light light) {
@@ -85,7 +85,7 @@ LightSample sample_directional(Light light) {
 ///
 /// Parameters: `light` the light: `position` and `attenuation` are read; `p` the lit point, scene units, in the light's space.
 /// Returns: direction, distance, attenuation as `polynomial` gives it, cone factor 1.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.4.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.4.
 /// Edges: `l` is zero at the light itself, where the example divides 0 by 0.
 /// Error model: 6 ULP + absolute 2^-23 for `l`, 4 ULP for `distance`, 12 ULP for `attenuation`.
 LightSample sample_point(Light light, vec3 p) {
@@ -100,7 +100,7 @@ LightSample sample_point(Light light, vec3 p) {
 ///
 /// Parameters: `light` the light: `position`, `attenuation`, `axis`, `cutoff` and `exponent` are read; `p` the lit point, scene units, in the light's space.
 /// Returns: as `sample_point`, with the cone factor of `cone_exponent`.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.5.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.5.
 /// Edges: at the light itself, and for a zero `axis`, the cosine is 0.
 /// Error model: that of `sample_point`; for the cone that of `cone_exponent` at a cosine with the error of `l`.
 LightSample sample_spot(Light light, vec3 p) {
@@ -113,7 +113,7 @@ LightSample sample_spot(Light light, vec3 p) {
 ///
 /// Parameters: `light` the light; `p` the lit point, scene units, in the light's space.
 /// Returns: as `sample_directional`, `sample_point` or `sample_spot`.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, examples 7.7 and 7.8.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, examples 7.7 and 7.8.
 /// Edges: every member is 0 for a light that is off or of unknown kind.
 /// Error model: that of the function chosen.
 LightSample sample_light(Light light, vec3 p) {

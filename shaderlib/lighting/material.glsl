@@ -33,7 +33,7 @@ struct Material {
 ///
 /// Parameters: `i` number of the pair, at least 0; `front` whether the front side is visible.
 /// Returns: `2*i` in front, `2*i + 1` behind.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.11, with the doubling done here.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.11, with the doubling done here.
 /// Edges: a negative `i` gives a negative index: the caller keeps it inside the array.
 /// Error model: exact.
 int material_index(int i, bool front) {
@@ -47,7 +47,7 @@ int material_index(int i, bool front) {
 ///
 /// Parameters: `i` twice the number of the pair, at least 0; `front` whether the front side is visible.
 /// Returns: `i` in front, `i + 1` behind.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.11.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.11.
 /// Edges: a negative `i` gives an index of at most 0: the caller keeps it inside the array.
 /// Error model: exact.
 int material_index_oglpg(int i, bool front) {

@@ -15,7 +15,7 @@
 ///
 /// Parameters: `c` cosine of the angle to the axis, [-1, 1]; `cutoff` cosine of the cone's half angle, [-1, 1].
 /// Returns: 0 or 1.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.5: dark where `c < cutoff`.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.5: dark where `c < cutoff`.
 /// Edges: the edge itself is lit; a `c` or a `cutoff` outside [-1, 1] is compared as it is.
 /// Error model: exact; either value where `c` and `cutoff` are closer than their errors.
 float cone_hard(float c, float cutoff) {
@@ -37,7 +37,7 @@ float cone_hard_exclusive(float c, float cutoff) {
 ///
 /// Parameters: `c` cosine of the angle to the axis, [-1, 1]; `cutoff` cosine of the cone's half angle, [-1, 1]; `e` exponent, at least 0.
 /// Returns: `max(c, 0)^e` where `c >= cutoff`, else 0; in [0, 1].
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.5.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.5.
 /// Edges: a cone wider than a half space (a `cutoff` below 0) is dark behind the light, where the example takes a power of a negative number; 1 inside the cone for an `e` of 0, as which a negative one counts; a `c` above 1 counts as 1.
 /// Error model: that of `safe_pow(c, e)`; either value where `c` and `cutoff` are closer than their errors.
 float cone_exponent(float c, float cutoff, float e) {

@@ -35,7 +35,7 @@ mat3 inverse3(mat3 m) {
 ///
 /// Parameters: `model` an affine transform, for column vectors.
 /// Returns: the normal matrix; its results are not unit. A rotation with one scale for all axes may use the 3x3 part itself.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, chapter 7, and every tutorial after it.
+/// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, per-vertex and per-fragment lighting; Newcastle University, Graphics for Games, tutorial 11 "Real-Time Lighting A"; Igalia, "Working with lights and shadows", part I.
 /// Edges: for a flattened model the division by the determinant is left out: the directions are still right; members beyond 3e38 count as that.
 /// Error model: that of `inverse3`.
 mat3 normal_matrix(mat4 model) {

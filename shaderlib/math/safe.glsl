@@ -64,7 +64,7 @@ bool is_nan_bits(float x) {
 ///
 /// Parameters: `c` linear colour, any range.
 /// Returns: linear colour in [0, 1].
-/// Source: OpenGL Programming Guide, 8th edition, 2013, example 7.2: `min(colour, 1)` at the end of the shader.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.2: `min(colour, 1)` at the end of the shader.
 /// Edges: negative channels become 0; NaN gives either bound.
 /// Error model: exact.
 vec3 saturate_color(vec3 c) {

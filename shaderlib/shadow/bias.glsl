@@ -24,7 +24,7 @@ float constant_bias(float d, float b) {
 ///
 /// Parameters: `n_dot_l` cosine n.l, [-1, 1]; `b` bias at 45 degrees, in depth, at least 0; `limit` largest bias, in depth, at least 0.
 /// Returns: `min(b*tan(acos(n.l)), limit)`, in [0, limit]: pass it to `constant_bias`.
-/// Source: the slope factor of polygon offset, Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.18, in the receiver.
+/// Source: the slope factor of polygon offset, Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.18, in the receiver.
 /// Edges: `limit` where `n_dot_l` is 0 or below: the light is at or behind the horizon; 0 for an `n_dot_l` above 1, and for a `b` of 0 or below in front of the horizon; but a `limit` of 0 or below is always the result.
 /// Error model: 6 ULP.
 float slope_bias(float n_dot_l, float b, float limit) {

@@ -20,7 +20,7 @@
 ///
 /// Parameters: `map`, `smp` depth map and comparison sampler; `uv` texture coordinates; `depth` reference, [0, 1].
 /// Returns: the lit share of the 2x2 texels around, [0, 1].
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.21, which smears the edge instead.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, examples 7.15 and 7.21: its map repeats the texels of the edge instead.
 /// Edges: 1 where `uv` is not in [0, 1]; a `depth` outside [0, 1] is clamped by a map of normalised integers, and not by one of floats.
 /// Error model: the sampler's two weights, of at least 8 bits each: absolute 2^-7.
 float compare_tap(LAMPLIGHT_DEPTH_MAP(map, smp), vec2 uv, float depth) {
@@ -32,7 +32,7 @@ float compare_tap(LAMPLIGHT_DEPTH_MAP(map, smp), vec2 uv, float depth) {
 ///
 /// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map.
 /// Returns: visibility, [0, 1].
-/// Source: Williams, "Casting Curved Shadows on Curved Surfaces", 1978; Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.21.
+/// Source: Williams, "Casting Curved Shadows on Curved Surfaces", 1978; Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.21.
 /// Edges: 1 where `at` is outside.
 /// Error model: that of `compare_tap`.
 float hard(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {

@@ -36,7 +36,7 @@ bool is_on_map(vec2 uv) {
 ///
 /// Parameters: `m` the light's projection times its view, for column vectors; `p_world` the point, anywhere in world space, scene units.
 /// Returns: clip coordinates, before the division by w.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.20; its bias matrix is `project` here.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.20; the bias matrix of example 7.19 is `project` here.
 /// Edges: w is 0 or below at and behind a perspective light, which `project` finds; zero for an `m` of zeros.
 /// Error model: absolute 4*2^-23*sum|m_ij*p_j| per component.
 vec4 shadow_coord(mat4 m, vec3 p_world) {
@@ -49,7 +49,7 @@ vec4 shadow_coord(mat4 m, vec3 p_world) {
 ///
 /// Parameters: `sc` clip coordinates from `shadow_coord`; `min_w` smallest light-space depth that can be shadowed, scene units for a perspective light, at least 0.
 /// Returns: `uv = (0.5*x + 0.5, 0.5 - 0.5*y)` and `depth = z` after division by w; `inside` where uv and depth are in [0, 1] and `w > min_w`.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.19, for another clip space; the guard on w: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, shadow mapping (there 1, its near plane).
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.19, for another clip space; the guard on w: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, shadow mapping (there 1, its near plane).
 /// Edges: outside, with uv and depth 0, where the w of `sc` is at or below `min_w` (0 at least): behind the light.
 /// Error model: absolute 4*2^-23*(|x/w| + 1), beside the error of `sc` divided by w.
 ShadowUv project(vec4 sc, float min_w) {
@@ -65,7 +65,7 @@ ShadowUv project(vec4 sc, float min_w) {
 ///
 /// Parameters: `sc` clip coordinates from `shadow_coord`, with OpenGL's projection; `min_w` as for `project`.
 /// Returns: `uv = 0.5*xy + 0.5` and `depth = 0.5*z + 0.5` after division by w; `inside` as for `project`.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, examples 7.16 and 7.19: the bias matrix.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.19: the bias matrix.
 /// Edges: as `project`.
 /// Error model: that of `project`.
 ShadowUv project_gl(vec4 sc, float min_w) {

@@ -58,7 +58,7 @@ vec3 perturb_normal(vec3 n, vec4 tangent, vec3 texel) {
 ///
 /// Parameters: `n` unit normal of the front; `front` whether the front side is visible.
 /// Returns: `n` in front, `-n` behind.
-/// Source: an addition to Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.11. The example does not flip the normal, so its back faces have no diffuse light.
+/// Source: an addition to Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, example 7.11. The example does not flip the normal, so its back faces have no diffuse light.
 /// Edges: zero for a zero `n`.
 /// Error model: exact.
 vec3 flip_if_back(vec3 n, bool front) {

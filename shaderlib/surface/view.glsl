@@ -15,7 +15,7 @@
 ///
 /// Parameters: `p_eye` the lit point, eye space, scene units.
 /// Returns: unit vector from the point to the eye, eye space.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, chapter 7, "Lighting Coordinate Systems": the local viewer.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, chapter 7, "Lighting Coordinate Systems": the local viewer.
 /// Edges: (0, 0, 1) for a point at the eye.
 /// Error model: that of `safe_normalize`.
 vec3 view_local(vec3 p_eye) {
@@ -26,7 +26,7 @@ vec3 view_local(vec3 p_eye) {
 ///
 /// Parameters: none.
 /// Returns: (0, 0, 1), eye space: towards the viewer, where the book's prose says -z.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, chapter 7, "Lighting Coordinate Systems", example 7.4.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, chapter 7, "Lighting Coordinate Systems", example 7.4.
 /// Edges: none.
 /// Error model: exact.
 vec3 view_infinite() {

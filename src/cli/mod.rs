@@ -33,6 +33,7 @@ mod mutate;
 mod overwrite;
 mod own;
 mod partial;
+mod probe;
 mod progress;
 mod render;
 mod sandbox;
@@ -91,6 +92,7 @@ enum Command {
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
     Render(render::Arguments),
+    Probe(probe::Arguments),
     Cost(cost::Arguments),
     #[command(hide = true)]
     Mutate(mutate::Arguments),
@@ -248,6 +250,7 @@ fn dispatch_command(
         Command::Check(arguments) => check::run_check(arguments),
         Command::Catalogue(arguments) => catalogue::run_catalogue(arguments, gpus),
         Command::Render(arguments) => render::run_render(arguments, form),
+        Command::Probe(arguments) => probe::run_probe(arguments),
         Command::Cost(arguments) => cost::run_cost(arguments, gpus, form),
         Command::Mutate(arguments) => mutate::run_mutate(arguments),
         Command::Sandbox(arguments) => sandbox::run_in_sandbox(arguments),

@@ -246,9 +246,8 @@ impl Checker<'_> {
         for pass in &entry.passes {
             self.permutation(&pass.program, &pass.key);
         }
-        if let Some(safe) = &entry.safe {
-            self.permutation(&Spanned::new(safe.span(), SAFE.to_owned()), safe);
-        }
+        let safe = |key: &Spanned<String>| Spanned::new(key.span(), SAFE.to_owned());
+        entry.safe.iter().for_each(|key| self.permutation(&safe(key), key));
         let groups = [
             ("object", entry.object),
             ("light", entry.light),

@@ -273,7 +273,9 @@ pub fn markdown_page(cards: &[&Card], strips: &[StripCard]) -> String {
                     that page under `gallery/`.\n\nPictures are coded as sRGB. The listings of the \
                     books write linear numbers to the frame buffer\nas they are: the first ball of \
                     `oglpg_7_1` has the colour (0.82, 0.26, 0.2), which is\n(209, 66, 51) in their \
-                    frame buffers, and (234, 139, 124) here.\n"
+                    frame buffers, and (234, 139, 124) here.\n\n\
+                    [The listings](../published.md) has a row for each listing that is drawn as \
+                    printed.\n"
             .to_owned();
     text.push_str("\n## Comparisons\n");
     strips.iter().for_each(|card| write_strip(&mut text, card));

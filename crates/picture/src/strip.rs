@@ -78,7 +78,7 @@ pub fn panel_plan(
     comparison: &Comparison,
     panel: &Panel,
 ) -> Result<Plan, Diagnostics> {
-    let plan = Plan::of_key(programs, "forward", &panel.key)?;
+    let plan = Plan::of_key(programs, &panel.program, &panel.key)?;
     Ok(Plan { scene: comparison.scene.clone(), numbers: panel.numbers.clone(), ..plan })
 }
 
@@ -150,7 +150,10 @@ pub struct Comparison {
 #[serde(deny_unknown_fields)]
 pub struct Panel {
     pub label: String,
-    /// A permutation of `forward`.
+    /// The program of the key.
+    #[serde(default = "default_program", skip_serializing_if = "is_default_program")]
+    pub program: String,
+    /// Its permutation.
     #[serde(default)]
     pub key: String,
     #[serde(default = "default_one")]
@@ -161,6 +164,14 @@ pub struct Panel {
     /// Instead of a key, a WGSL expression for the colour at `at`, which goes from (-4/3, -1) to
     /// (4/3, 1).
     pub value: Option<String>,
+}
+
+fn default_program() -> String {
+    "forward".to_owned()
+}
+
+fn is_default_program(program: &str) -> bool {
+    program == default_program()
 }
 
 fn default_one() -> u32 {

@@ -96,8 +96,8 @@ pub fn cube_projection(near: f64, far: f64, clip: Clip, depth: Depth) -> DMat4 {
 ///
 /// Parameters: `projection` for the same clip space, `view` of the light.
 /// Returns: a matrix whose result, divided by w, is `(u, v, depth)`, each in [0, 1] on the map.
-/// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, examples 7.16 and 7.19;
-/// its bias matrix is OpenGL's alone.
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, examples 7.16
+/// and 7.19; its bias matrix is OpenGL's alone.
 pub fn shadow_matrix(projection: DMat4, view: DMat4, clip: Clip) -> DMat4 {
     let (scale, offset) = match clip {
         Clip::Wgpu => (DVec3::new(0.5, -0.5, 1.0), DVec3::new(0.5, 0.5, 0.0)),

@@ -399,7 +399,7 @@ fn make_shot(arguments: &Arguments, executor: &ExecutorEntry) -> Result<Shot, Fa
 }
 
 /// What is around a scene, by name or from a file.
-fn find_surroundings(name: Option<&str>) -> Result<Surroundings, Failure> {
+pub fn find_surroundings(name: Option<&str>) -> Result<Surroundings, Failure> {
     let Some(name) = name else {
         return Ok(Surroundings::Usual);
     };

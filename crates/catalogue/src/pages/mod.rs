@@ -86,7 +86,8 @@ Depth is from 0 to 1, from near to far.
 
 There are also pages of the [programs](programs.md) with their axes, of the [presets](presets.md),
 one for each published example, and of the [costs](costs.md) of functions on GPUs, with pictures of
-cost against quality.
+cost against quality. [The published listings](../published.md) says of each listing that it is drawn
+as printed, and how far its safe form is away.
 
 `cargo xtask docs` generates this catalogue from the library.
 ";
