@@ -61,7 +61,7 @@ pub struct PlacedPointers {
 pub fn placed_pointers(module: &Module) -> Option<PlacedPointers> {
     let bodies = module.functions.iter().map(|(_, function)| function);
     let bodies = bodies.chain(module.entry_points.iter().map(|point| &point.function));
-    if !bodies.into_iter().any(|function| takes(module, function) || passes(function)) {
+    if !bodies.into_iter().any(|function| takes(module, function) || passes(module, function)) {
         return None;
     }
     let mut made = MadeFunctions {
@@ -169,24 +169,30 @@ fn is_refused(module: &Module, argument: &FunctionArgument) -> bool {
 }
 
 /// Whether a function passes a pointer to a part of a variable on.
-fn passes(function: &Function) -> bool {
-    fn in_block(function: &Function, block: &Block) -> bool {
-        block.iter().any(|statement| {
-            let is_part = |value: &Value| leads_to_a_part(&function.expressions, *value);
-            let is_own = match statement {
-                Statement::Call { function: _, arguments, result: _ } => {
-                    arguments.iter().any(is_part)
-                }
-                _ => false,
-            };
-            is_own || inner_blocks(statement).into_iter().any(|inner| in_block(function, inner))
+fn passes(module: &Module, function: &Function) -> bool {
+    any_call(&function.body, &mut |callee, arguments| {
+        let parameters = &module.functions[callee].arguments;
+        parameters.iter().zip(arguments).any(|(parameter, value)| {
+            is_pointer(module, parameter) && leads_to_a_part(&function.expressions, *value)
         })
-    }
-    in_block(function, &function.body)
+    })
 }
 
-/// Whether a value may be a pointer to a part of a variable: a part of a value that is no pointer
-/// has another root.
+fn any_call(block: &Block, is_it: &mut dyn FnMut(Handle<Function>, &[Value]) -> bool) -> bool {
+    block.iter().any(|statement| {
+        let is_own = match statement {
+            Statement::Call { function, arguments, result: _ } => is_it(*function, arguments),
+            _ => false,
+        };
+        is_own || inner_blocks(statement).into_iter().any(|inner| any_call(inner, is_it))
+    })
+}
+
+fn is_pointer(module: &Module, argument: &FunctionArgument) -> bool {
+    module.types[argument.ty].inner.pointer_space().is_some()
+}
+
+/// Whether a pointer leads to a part of a variable.
 fn leads_to_a_part(expressions: &Arena<Expression>, mut value: Value) -> bool {
     let mut has_path = false;
     loop {
@@ -194,9 +200,9 @@ fn leads_to_a_part(expressions: &Arena<Expression>, mut value: Value) -> bool {
             Expression::Access { base, index: _ } | Expression::AccessIndex { base, index: _ } => {
                 base
             }
-            Expression::LocalVariable(_) | Expression::GlobalVariable(_) => return has_path,
-            // It may be a pointer; that of a value is found where the call is placed.
-            Expression::FunctionArgument(_) => return has_path,
+            Expression::LocalVariable(_)
+            | Expression::GlobalVariable(_)
+            | Expression::FunctionArgument(_) => return has_path,
             _ => return false,
         };
         has_path = true;
@@ -424,8 +430,8 @@ impl FunctionRewrite<'_, '_> {
         let (mut places, mut new) = (Vec::new(), Vec::new());
         for (argument, value) in module.functions[function].arguments.iter().zip(arguments) {
             let value = self.value(*value)?;
-            let is_pointer = module.types[argument.ty].inner.pointer_space().is_some();
-            let is_placed = is_pointer && leads_to_a_part(&self.expressions, value);
+            let is_placed =
+                is_pointer(module, argument) && leads_to_a_part(&self.expressions, value);
             if !is_placed && !is_refused(module, argument) {
                 new.push(value);
                 places.push(None);
