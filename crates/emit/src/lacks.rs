@@ -304,15 +304,19 @@ fn lacking_features(
         .chain(multisampled(module, version))
 }
 
+/// Front ends declare types of textures that nothing uses.
 fn multisampled(module: &Module, version: Version) -> impl Iterator<Item = (&'static str, Span)> {
     let what = MULTISAMPLED.lacking(version);
-    module.types.iter().filter_map(move |(handle, ty)| match ty.inner {
-        TypeInner::Image {
-            dim: _,
-            arrayed: _,
-            class: ImageClass::Sampled { kind: _, multi: true } | ImageClass::Depth { multi: true },
-        } => what.map(|what| (what, first_use(module, &|ty| ty == handle))),
-        _ => None,
+    module.global_variables.iter().filter_map(move |(handle, variable)| {
+        match module.types[variable.ty].inner {
+            TypeInner::Image {
+                dim: _,
+                arrayed: _,
+                class:
+                    ImageClass::Sampled { kind: _, multi: true } | ImageClass::Depth { multi: true },
+            } => what.map(|what| (what, module.global_variables.get_span(handle))),
+            _ => None,
+        }
     })
 }
 
