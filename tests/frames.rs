@@ -50,7 +50,7 @@ pub fn most_open(program: &str) -> f64 {
 
 /// Its permutations are listings that have little in common, so that covering all values takes all of
 /// them. By day, every seventh is drawn; `render` and `published` draw pictures of all.
-const LISTINGS: &str = "published";
+pub const LISTINGS: &str = "published";
 const STEP_OF_LISTINGS: usize = 7;
 
 const BACKENDS: [&str; 2] = ["vulkan", "gl"];

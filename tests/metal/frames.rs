@@ -13,7 +13,7 @@ use libtest_mimic::{Failed, Trial};
 use naga::{Binding, BuiltIn};
 
 use crate::fragments::{self, Tally, Watched, entry_function};
-use crate::frames::{PROGRAMS, Scene, Sources, bundle, most_open, most_points, points};
+use crate::frames::{LISTINGS, PROGRAMS, Scene, Sources, bundle, most_open, most_points, points};
 
 /// The number of permutations of `forward` in each language. All pairs of values are among them, as
 /// they are of the other programs.
@@ -23,8 +23,10 @@ const LEAST_POINTS: usize = 200;
 const DRAWN_POINTS: usize = 64;
 /// The size of a frame in pixels.
 const SIZE: [u32; 2] = [128, 64];
-/// Every 29th quad is computed again.
+/// Every 29th quad is computed again. The objects of the listings are small, so there it is every
+/// 17th.
 const STEP: usize = 29;
+const STEP_OF_LISTINGS: usize = 17;
 /// The least number of fragments of a permutation that must be compared.
 const LEAST: usize = 200;
 /// The number of permutations whose stages are compiled together.
@@ -48,6 +50,7 @@ fn drawn(program: &'static str, language: Language) -> Result<(), String> {
     points.truncate(most_points(DRAWN_POINTS)?);
     let bundle = bundle(&sources, &points, &[Target::MSL])?;
     let (mut total, mut failures) = (Tally::default(), Vec::new());
+    let step = if program == LISTINGS { STEP_OF_LISTINGS } else { STEP };
     for points in points.chunks(BATCH) {
         let scenes =
             points.iter().map(|point| sources.scene(point)).collect::<Result<Vec<_>, _>>()?;
@@ -61,7 +64,7 @@ fn drawn(program: &'static str, language: Language) -> Result<(), String> {
             .collect::<Result<Vec<_>, _>>()?;
         let compiled = CompiledStages::new(stages.shipped).map_err(|missing| missing.reason)?;
         for ((scene, key), pair) in scenes.iter().zip(&keys).zip(pairs) {
-            match agrees(&compiled, pair, scene, most_open(program)) {
+            match agrees(&compiled, pair, scene, (step, most_open(program))) {
                 Ok(tally) => total.add(&tally),
                 Err(error) => failures.push(format!("[{key}] {error}")),
             }
@@ -111,7 +114,7 @@ fn agrees(
     compiled: &CompiledStages,
     pair: [usize; 2],
     scene: &Scene,
-    most: f64,
+    (step, most): (usize, f64),
 ) -> Result<Tally, String> {
     let Scene { vertex, fragment, mesh, buffers, fixtures, .. } = scene;
     let items = [DrawItem { mesh, buffers }];
@@ -123,7 +126,7 @@ fn agrees(
     let resources = fragments::resources(buffers.clone(), fixtures, &BTreeMap::new());
     let watched = Watched { size: SIZE, targets: &targets };
     let mut tally = Tally::default();
-    fragments::recompute(fragment, resources, &watched, STEP, &mut tally)?;
+    fragments::recompute(fragment, resources, &watched, step, &mut tally)?;
     tally.checked(LEAST, most)
 }
 

@@ -147,16 +147,16 @@ fn missing_is_noticed() -> Result<(), Failed> {
     let known = library().presets.iter().find(|preset| preset.name == "hpg_5_shadow");
     let mut preset = known.ok_or("no such preset")?.clone();
     preset.numbers.remove("caster");
-    preset.open.remove("light.color");
+    preset.open.remove("light.position");
     preset.open.insert("haze.density".to_owned());
     let (missing, unread) = unaccounted(&preset)?;
     match (
         missing.contains(&"caster.min_w".to_owned()),
-        missing.contains(&"light.color".to_owned()),
+        missing.contains(&"light.position".to_owned()),
     ) {
         (true, true) if unread == ["haze.density"] => Ok(()),
         _ => Err(format!(
-            "expected caster.min_w and light.color to be missing, found {missing:?}; \
+            "expected caster.min_w and light.position to be missing, found {missing:?}; \
              expected haze.density to be unread, found {unread:?}"
         )
         .into()),
