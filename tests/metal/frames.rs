@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::eval::Program;
 use lamplight::execute::frame::{DrawItem, Drawing, EntryPoint};
+use lamplight::execute::kernel::SENTINEL;
 use lamplight::execute::raster::CompiledStages;
 use lamplight::execute::shipped::Shipped;
 use lamplight::picture::frame::ReadyStage;
@@ -161,7 +162,8 @@ fn in_order(stage: &ReadyStage, targets: &[Vec<u32>]) -> Result<Vec<Vec<u32>>, S
     for four in inputs.chunks(4) {
         let pixels = 0..color.len() / 4;
         let word = |pixel: usize, i: usize| {
-            four.get(i).map_or(0, |(target, component)| target[4 * pixel + component])
+            // What is left of four words tells nothing of whether the fragment was run.
+            four.get(i).map_or(SENTINEL, |(target, component)| target[4 * pixel + component])
         };
         ordered.push(pixels.flat_map(|pixel| (0..4).map(move |i| word(pixel, i))).collect());
     }
