@@ -1,6 +1,7 @@
 //! One scene in each client, from one bundle: OpenGL 3.3 and OpenGL ES 3 in C by `lamplight_gl.h`,
-//! Vulkan in C by `lamplight_vk.h`, wgpu by `lamplight-wgpu`, WebGPU and WebGL 2 by `@lamplight/bundle`. All 18 keys give the same pictures, but for edges. A
-//! client with a mistake gives another one. What each client does for Lamplight has few lines.
+//! Vulkan in C by `lamplight_vk.h`, wgpu by `lamplight-wgpu`, WebGPU and WebGL 2 by
+//! `@lamplight/bundle`. All 18 keys give the same pictures, but for edges. A client with a mistake
+//! gives another one. What each client does for Lamplight has few lines.
 
 mod rust_wgpu;
 
