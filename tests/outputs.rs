@@ -4,6 +4,8 @@
 //! `tests/outputs/shaders/` are compiled for the targets that their manifest names, and the
 //! independent validators of these targets accept them.
 
+mod pointers;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -23,6 +25,7 @@ pub fn tests() -> Vec<Trial> {
             Trial::test(name, || values(executor.name))
         })
         .chain([
+            Trial::test("outputs::random_pointers", pointers::random_programs),
             Trial::test("outputs::shaders_are_valid", shaders),
             Trial::test("outputs::sizes", sizes),
             Trial::test("outputs::sizes_of_spec_axes", spec_sizes),

@@ -43,6 +43,25 @@ fn doubling_structures() -> Files {
     )
 }
 
+/// Each function passes pointers to both members on, so the last would be made for each of many
+/// places.
+fn doubling_pointers() -> Files {
+    const DEPTH: usize = 16;
+    let types = repeated(DEPTH, |i| format!("struct S{} {{ a: S{i}, b: S{i} }}\n", i + 1));
+    let one = |i| {
+        let (next, parts) = (i + 1, format!("f{i}(&(*p).a); f{i}(&(*p).b);"));
+        format!("fn f{next}(p: ptr<function, S{next}>) {{ {parts} }}\n")
+    };
+    let main = format!(
+        "struct S0 {{ a: f32, b: f32 }}\nfn f0(p: ptr<function, S0>) {{ (*p).a += 1.0; }}\n\
+         {types}{}@fragment fn m() -> @location(0) vec4f {{ var s: S{DEPTH}; f{DEPTH}(&s);\n\
+         return vec4f(s{}); }}\n",
+        repeated(DEPTH, one),
+        ".a".repeat(DEPTH + 1)
+    );
+    vec![("m.wgsl", main)]
+}
+
 fn remainders() -> Files {
     let main = format!(
         "@fragment fn m(@location(0) x: f32) -> @location(0) vec4f {{ return vec4f({}x{}); }}",
@@ -127,5 +146,6 @@ pub const CASES: &[Hostile] = &[
     }),
     compile("doubling_constants", "m.wgsl:", doubling_constants),
     compile("doubling_structures", "m.wgsl:", doubling_structures),
+    compile("doubling_pointers", "more than 262144 expressions", doubling_pointers),
     compile("remainders", "m.wgsl:1:", remainders),
 ];

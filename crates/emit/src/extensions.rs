@@ -1,7 +1,9 @@
 //! `enable` in WGSL, which browsers ask for. naga reads what subgroups allow without it, and does not
 //! write it; and it writes `enable f16;` only where a type of the module is of `f16`.
 
-use naga::{Binding, BuiltIn, Expression, Function, Literal, Module, ScalarKind, TypeInner};
+use naga::{Binding, BuiltIn, Expression, Function, Module, Scalar, TypeInner};
+
+use lamplight_validate::{functions, makes_scalar};
 
 /// The directive of an extension, and whether a module needs it.
 type Extension = (&'static str, fn(&Module) -> bool);
@@ -22,19 +24,8 @@ pub fn with_extensions(text: String, module: &Module) -> String {
 /// Whether a conversion or a number is of `f16`; naga sees types by itself.
 fn uses_f16(module: &Module) -> bool {
     functions(module).any(|function| {
-        function.expressions.iter().any(|(_, value)| match value {
-            Expression::As { expr: _, kind, convert } => {
-                *kind == ScalarKind::Float && *convert == Some(2)
-            }
-            Expression::Literal(Literal::F16(_)) => true,
-            _ => false,
-        })
+        function.expressions.iter().any(|(_, value)| makes_scalar(value, Scalar::F16))
     })
-}
-
-fn functions(module: &Module) -> impl Iterator<Item = &Function> {
-    let points = module.entry_points.iter().map(|point| &point.function);
-    module.functions.iter().map(|(_, function)| function).chain(points)
 }
 
 fn uses_subgroups(module: &Module) -> bool {

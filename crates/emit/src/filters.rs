@@ -7,6 +7,8 @@ use naga::diagnostic_filter::{
 };
 use naga::{Function, Handle, Module};
 
+use lamplight_validate::functions;
+
 type Leaf = Option<Handle<DiagnosticFilterNode>>;
 
 /// The text that naga wrote of a module, with the filters of the module and of its functions.
@@ -19,8 +21,7 @@ pub fn with_filters(text: &str, module: &Module) -> Result<String, String> {
     }
     let own = written(module, module.diagnostic_filter_leaf, None);
     let directives: String = own.iter().map(|filter| format!("diagnostic{filter};\n")).collect();
-    let functions = module.functions.iter().map(|(_, function)| function);
-    let mut functions = functions.chain(module.entry_points.iter().map(|point| &point.function));
+    let mut functions = functions(module);
     let (mut out, mut has_directives) = (String::with_capacity(text.len()), false);
     for line in text.split_inclusive('\n') {
         // Directives come after `enable` and before all declarations.

@@ -14,6 +14,7 @@ use super::slots::{EXPLICIT_LIMIT, Numbering, UsedBinding, assign_slots, native_
 use super::text::BoundedText;
 use super::{EmitSource, Emitted};
 use lamplight_bundle::{BindingKind, ClipConvention, Combined, Native};
+use lamplight_validate::functions;
 
 /// The uniform that naga adds for WebGPU's first instance, which OpenGL does not count from.
 const FIRST_INSTANCE: &str = "naga_vs_first_instance";
@@ -30,7 +31,7 @@ pub fn write_glsl(
     if let Some(reason) = lacks::first_lack(source.module, version) {
         return Err(reason);
     }
-    let plainer = invariants::without_invariant_inputs(source.module);
+    let plainer = invariants::without_invariant_inputs(source.module, source.stage);
     let source = &EmitSource { module: plainer.as_ref().unwrap_or(source.module), ..*source };
     let plain = plain::with_plain_forms(source.module, source.info, first_needs(version))?;
     let (module, info) =
@@ -86,9 +87,7 @@ fn with_known_extensions(text: String, module: &naga::Module) -> String {
 
 /// Whether a comparison has a bias, as those of GLSL may.
 fn compares_with_bias(module: &naga::Module) -> bool {
-    let points = module.entry_points.iter().map(|point| &point.function);
-    let mut functions = module.functions.iter().map(|(_, function)| function).chain(points);
-    functions.any(|function| {
+    functions(module).any(|function| {
         function.expressions.iter().any(|(_, value)| {
             matches!(
                 value,

@@ -16,7 +16,9 @@ use super::{columns, strides, targets};
 use lamplight_bundle::{Language, Target};
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
-use lamplight_validate::{CAPABILITIES, NOT_EVERY, Validated, first_use, inner_blocks, lacking};
+use lamplight_validate::{
+    CAPABILITIES, NOT_EVERY, Validated, first_use, functions, inner_blocks, lacking,
+};
 
 /// Something that GLSL did not have from the start.
 struct Later {
@@ -244,9 +246,8 @@ fn discards_in_continuing(module: &Module) -> Vec<Span> {
             inner_blocks(statement).into_iter().for_each(|inner| find(inner, found));
         }
     }
-    let points = module.entry_points.iter().map(|point| &point.function);
     let mut found = Vec::new();
-    for function in module.functions.iter().map(|(_, function)| function).chain(points) {
+    for function in functions(module) {
         find(&function.body, &mut found);
     }
     found
@@ -289,9 +290,7 @@ fn lacking_features(
     module: &Module,
     version: Version,
 ) -> impl Iterator<Item = (&'static str, Span)> {
-    let points = module.entry_points.iter().map(|point| &point.function);
-    let all = module.functions.iter().map(|(_, function)| function).chain(points);
-    let expressions = all.flat_map(move |function| {
+    let expressions = functions(module).flat_map(move |function| {
         let expressions = function.expressions.iter();
         expressions.filter_map(move |(handle, expression)| {
             let what = later_builtin(module, function, version, expression)?;

@@ -181,6 +181,9 @@ limits! {
         "memory: HLSL has a member for each four bytes", "`limit-exceeded`";
     TYPE_NESTING: usize = 64, Count, "depth of nested types", "the stack of naga",
         "`limit-exceeded`";
+    PLACED_EXPRESSIONS: usize = 1 << 18, Count,
+        "expressions of all functions that are made for the places of their pointers",
+        "memory: a function is made for each place", "`limit-exceeded`";
     LINKED_BYTES: usize = 8 << 20, Bytes,
         "bytes of all functions of one text, each with the declarations that it uses",
         "time: naga reads each function with these", "no error: the text is compiled as a whole";

@@ -22,8 +22,8 @@ use lamplight_compose::Composed;
 use lamplight_emit as emit;
 use lamplight_emit::spirv::words;
 use lamplight_validate::{
-    Validated, check_switches, guard, info_of, is_bounded, is_small, may_alias, on_large_stack,
-    parse_glsl, prepare_part,
+    Validated, check_switches, functions, guard, info_of, is_bounded, is_small, may_alias,
+    on_large_stack, parse_glsl, prepare_part,
 };
 
 /// A unit in every target.
@@ -126,9 +126,7 @@ fn translate_inner(
 fn aliases(module: &Module, info: &ModuleInfo) -> bool {
     let names =
         |callee: Handle<Function>, global: Handle<GlobalVariable>| !info[callee][global].is_empty();
-    let points = module.entry_points.iter().map(|point| &point.function);
-    let mut all = module.functions.iter().map(|(_, function)| function).chain(points);
-    all.any(|function| may_alias(module, function, &names))
+    functions(module).any(|function| may_alias(module, function, &names))
 }
 
 fn parse_recipe(outline: &Outline<'_>, text: &str) -> Result<Module, Reason> {

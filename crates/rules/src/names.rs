@@ -9,8 +9,8 @@ use super::syntax::{Attribute, DeclarationKind, ExprId, ExprKind, Function, Tree
 /// What a name means in the scope of the module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Global {
-    /// `const` and `override`.
-    Constant,
+    /// A `const` or an `override`, by its index among the declarations.
+    Constant(usize),
     /// A `var`, by its index among the declarations.
     Variable(usize),
     Function(usize),
@@ -38,7 +38,7 @@ impl<'t, 'm> Module<'t, 'm> {
         for (at, declaration) in tree.declarations.iter().enumerate() {
             let meaning = match declaration.kind {
                 DeclarationKind::Var => Global::Variable(at),
-                _ => Global::Constant,
+                _ => Global::Constant(at),
             };
             names.insert(declaration.name, meaning);
         }

@@ -45,16 +45,20 @@ fn values() -> Result<(), Failed> {
 
 /// That the value of a call is the folded one, but for rounding.
 fn assertion((at, call): (usize, &String)) -> String {
-    let is_exact = ["transpose", "pack", "unpack", "insert", "extract", "ldexp"]
-        .iter()
-        .any(|name| call.starts_with(name));
-    match is_exact || call.contains(".exp") {
-        true if call.starts_with("transpose") => String::new(),
-        true => format!("const_assert all(({call}) == x{at});\n"),
-        false if call.starts_with("determinant") => {
-            format!("const_assert abs({call} - x{at}) <= 0.001;\n")
+    const EXACT: [&str; 5] = ["pack", "unpack", "insert", "extract", "ldexp"];
+    let is_exact = EXACT.iter().any(|name| call.starts_with(name)) || call.contains(".exp");
+    let assert = |condition: String| format!("const_assert {condition};\n");
+    match call.strip_prefix("transpose(mat").and_then(|rest| rest.split_once('x')) {
+        // Matrices are compared by their columns, of which there are as many as there were rows.
+        Some((_, rest)) => {
+            let columns = rest.chars().next().and_then(|digit| digit.to_digit(10)).unwrap_or(0);
+            (0..columns)
+                .map(|one| assert(format!("all(({call})[{one}] == x{at}[{one}])")))
+                .collect()
         }
-        false => format!("const_assert all(abs({call} - x{at}) <= abs(x{at}) * 0 + 0.001);\n"),
+        None if is_exact => assert(format!("all(({call}) == x{at})")),
+        // The limit has the shape of the value.
+        None => assert(format!("all(abs({call} - x{at}) <= x{at} * 0 + 0.001)")),
     }
 }
 

@@ -38,17 +38,18 @@ pub use operands::{
 #[doc(hidden)]
 pub use sandbox::{STAGE, SandboxJob, SandboxOutputs, try_in_sandbox};
 pub use translated::{glsl_as_wgsl, lint_as_wgsl, of_translation, positions_of, translate_glsl};
-pub use uses::first_use;
+pub use uses::{first_use, functions, makes_scalar};
 pub use words::NOT_EVERY;
 
 use naga::front::wgsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationError, ValidationFlags, Validator};
 
-use pointers::PlacedPointers;
+use pointers::{PlacedPointers, Unplaced};
 
 use lamplight_bundle::{Language, Stage};
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_files::limits::PLACED_EXPRESSIONS;
 
 /// A module that naga accepts, with what it found out about it.
 #[derive(Debug, Clone)]
@@ -203,7 +204,7 @@ fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
 }
 
 /// Parses WGSL. Some functions of constants naga refuses, with several messages, since it does not
-/// compute them; then their values are put into the text.
+/// compute them; then their values are put into the text. It needs a large stack.
 ///
 /// # Errors
 /// Those of naga, with the places of the text.
@@ -224,7 +225,7 @@ pub fn is_bounded(module: &naga::Module) -> bool {
 /// Puts into a module what naga needs, for one function at a time: `false` where that is not enough,
 /// and the module must be compiled as a whole.
 pub fn prepare_part(module: &mut naga::Module) -> bool {
-    prepare(module).is_ok() && pointers::placed_pointers(module).is_none()
+    prepare(module).is_ok() && !pointers::has_pointers_to_place(module)
 }
 
 /// Puts into a module what naga needs to write it rightly.
@@ -246,15 +247,9 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
         return Err(vec![inputs_of_compute(composed, name)]);
     }
     // A pointer that is placed no longer shows what else leads there.
-    let original = match pointers::placed_pointers(&module) {
-        None => None,
-        Some(PlacedPointers { module: placed, uncalled }) => {
-            if let Some(uncalled) = &uncalled {
-                info_for_some(uncalled)
-                    .map_err(|error| vec![report::validation_error(composed, uncalled, &error)])?;
-            }
-            Some(std::mem::replace(&mut module, placed))
-        }
+    let original = match pointers::has_pointers_to_place(&module) {
+        true => replace_by_placed(composed, &mut module).map_err(|error| vec![error])?,
+        false => None,
     };
     prepare(&mut module).map_err(|span| vec![not_carried(composed, span)])?;
     let portable = info_of(&module);
@@ -272,6 +267,35 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
     alias::refuse_aliases(composed, original.as_ref().unwrap_or(&module))
         .map_err(|error| vec![error])?;
     Ok(Validated { language: composed.language, module, info, portable: is_portable })
+}
+
+/// Places the pointers of a module, and returns the module as it was; `None` where it is not valid,
+/// and stays as it is.
+fn replace_by_placed(
+    composed: &Composed,
+    module: &mut naga::Module,
+) -> Result<Option<naga::Module>, Diagnostic> {
+    match pointers::place_pointers(module) {
+        Ok(PlacedPointers { module: placed, uncalled }) => {
+            if let Some(uncalled) = &uncalled {
+                info_for_some(uncalled)
+                    .map_err(|error| report::validation_error(composed, uncalled, &error))?;
+            }
+            Ok(Some(std::mem::replace(module, placed)))
+        }
+        Err(Unplaced::Invalid) => Ok(None),
+        Err(Unplaced::Many(span)) => {
+            let message = format!(
+                "the functions that are made for the places of their pointers have more than \
+                 {PLACED_EXPRESSIONS} expressions"
+            );
+            let error = Diagnostic::error(codes::LIMIT_EXCEEDED, message);
+            Err(match span.to_range().and_then(|range| composed.map.lookup(range)) {
+                Some(span) => error.at(span, "the limit is reached in this function"),
+                None => error,
+            })
+        }
+    }
 }
 
 /// The error about a value that a `continuing` block cannot have.

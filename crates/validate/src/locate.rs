@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use lamplight_rules::{Place, parts};
 
-/// How many times a text is parsed, and how long it may be for that.
+/// How many parts a text may have, and how long it may be: it is parsed for each function and each
+/// value.
 const MOST_PARTS: usize = 512;
 const LONGEST: usize = 1 << 16;
 
@@ -23,10 +24,10 @@ pub fn place_of_error(
         if is_same(&blanked(text, statements)) {
             continue;
         }
-        // naga reads statements in their order, so the others may go.
-        let first =
-            (1..=statements.len()).find(|kept| is_same(&blanked(text, &statements[*kept..])));
-        return Some(statements[first? - 1].range());
+        // naga reads statements in their order: with those up to the wrong one it is there.
+        let kept: Vec<usize> = (1..=statements.len()).collect();
+        let fine = kept.partition_point(|kept| !is_same(&blanked(text, &statements[*kept..])));
+        return statements.get(fine).map(|statement| statement.range());
     }
     let is_it = |value: &&Place| !is_same(&with_zero(text, **value));
     parts.values.iter().find(is_it).map(|value| value.range())

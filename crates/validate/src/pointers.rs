@@ -7,22 +7,22 @@
 //! the way are parameters instead. A variable of a function is a parameter as a whole. Functions with
 //! pointers to buffers that nothing calls are left out, since nothing says where these point to.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use naga::front::Typifier;
 use naga::proc::ResolveContext;
 use naga::{
-    AddressSpace, Arena, Block, Expression, Function, FunctionArgument, GlobalVariable, Handle,
-    LocalVariable, MemoryDecorations, Module, Range, ResourceBinding, Span, Statement, Type,
-    TypeInner, UniqueArena,
+    AddressSpace, Arena, Block, EntryPoint, Expression, Function, FunctionArgument, GlobalVariable,
+    Handle, LocalVariable, MemoryDecorations, Module, Range, ResourceBinding, Span, Statement,
+    Type, TypeInner, UniqueArena,
 };
 
+use lamplight_files::limits::PLACED_EXPRESSIONS;
+
 use super::operands::{change_operands, change_used, inner_blocks, inner_blocks_mut, result_mut};
+use super::uses::functions;
 
 type Value = Handle<Expression>;
-
-/// How many functions are made at most.
-const MOST: usize = 4096;
 
 /// Where a pointer leads, but for the indices on the way.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,36 +56,39 @@ pub struct PlacedPointers {
     pub uncalled: Option<Module>,
 }
 
-/// A module in which naga takes every pointer; `None` where that is so already, or where it cannot
-/// be made.
-pub fn placed_pointers(module: &Module) -> Option<PlacedPointers> {
-    let bodies = module.functions.iter().map(|(_, function)| function);
-    let bodies = bodies.chain(module.entry_points.iter().map(|point| &point.function));
-    if !bodies.into_iter().any(|function| takes(module, function) || passes(module, function)) {
-        return None;
-    }
+/// Why pointers are not placed.
+#[derive(Debug, Clone, Copy)]
+pub enum Unplaced {
+    /// The module is not valid. naga's validator finds out why.
+    Invalid,
+    /// There are more functions than `PLACED_EXPRESSIONS` allows.
+    Many(Span),
+}
+
+/// Whether a module has pointers that naga does not take.
+pub fn has_pointers_to_place(module: &Module) -> bool {
+    functions(module).any(|function| takes(module, function) || passes(module, function))
+}
+
+/// The module in which naga takes every pointer.
+///
+/// # Errors
+/// Where it cannot be made.
+pub fn place_pointers(module: &Module) -> Result<PlacedPointers, Unplaced> {
     let mut made = MadeFunctions {
         module,
         types: module.types.clone(),
         functions: Arena::new(),
         handles: BTreeMap::new(),
+        expressions: 0,
+        excess: None,
     };
-    let placed = made.module()?;
-    let (mut variables, mut all_places) = (module.global_variables.clone(), Vec::new());
-    for (handle, function) in module.functions.iter() {
-        if !made.handles.keys().any(|(known, _)| *known == handle) {
-            let places = own_places(module, function, &mut variables)?;
-            all_places.push((handle, places));
-        }
-    }
-    for (handle, places) in &all_places {
-        made.function(*handle, places)?;
-    }
-    let uncalled = (!all_places.is_empty()).then(|| {
-        let MadeFunctions { module: _, types, functions, handles: _ } = made;
-        Module { types, functions, global_variables: variables, ..placed.clone() }
+    let placed = made.place_called().and_then(|points| {
+        let placed = made.module(points, module.global_variables.clone());
+        let uncalled = made.place_uncalled()?;
+        Some(PlacedPointers { module: placed, uncalled })
     });
-    Some(PlacedPointers { module: placed, uncalled })
+    placed.ok_or(made.excess.map_or(Unplaced::Invalid, Unplaced::Many))
 }
 
 /// Places for the pointers of a function that nothing calls: new variables of the module.
@@ -113,49 +116,6 @@ fn own_places(
     };
     let arguments = function.arguments.iter();
     arguments.map(|one| if is_refused(module, one) { place(one) } else { Some(None) }).collect()
-}
-
-impl MadeFunctions<'_> {
-    /// The module of all functions whose pointers are known.
-    fn module(&mut self) -> Option<Module> {
-        let module = self.module;
-        for (handle, function) in module.functions.iter() {
-            if !takes(module, function) {
-                self.function(handle, &vec![None; function.arguments.len()])?;
-            }
-        }
-        let mut points = module.entry_points.clone();
-        for point in &mut points {
-            let places = vec![None; point.function.arguments.len()];
-            point.function = self.rewritten(&point.function, &places)?;
-        }
-        let Module {
-            types: _,
-            special_types,
-            constants,
-            overrides,
-            global_variables,
-            global_expressions,
-            functions: _,
-            entry_points: _,
-            diagnostic_filters,
-            diagnostic_filter_leaf,
-            doc_comments,
-        } = module.clone();
-        Some(Module {
-            types: self.types.clone(),
-            special_types,
-            constants,
-            overrides,
-            global_variables,
-            global_expressions,
-            functions: self.functions.clone(),
-            entry_points: points,
-            diagnostic_filters,
-            diagnostic_filter_leaf,
-            doc_comments,
-        })
-    }
 }
 
 /// Whether a function takes a pointer that naga refuses.
@@ -214,9 +174,76 @@ struct MadeFunctions<'m> {
     types: UniqueArena<Type>,
     functions: Arena<Function>,
     handles: BTreeMap<(Handle<Function>, Places), Handle<Function>>,
+    /// How many expressions the functions have.
+    expressions: usize,
+    /// The function that has more than are allowed.
+    excess: Option<Span>,
 }
 
 impl MadeFunctions<'_> {
+    /// Makes the functions whose pointers are known, and returns the entry points.
+    fn place_called(&mut self) -> Option<Vec<EntryPoint>> {
+        let module = self.module;
+        for (handle, function) in module.functions.iter() {
+            if !takes(module, function) {
+                self.function(handle, &vec![None; function.arguments.len()])?;
+            }
+        }
+        let mut points = module.entry_points.clone();
+        for point in &mut points {
+            let places = vec![None; point.function.arguments.len()];
+            point.function = self.rewritten(&point.function, &places)?;
+        }
+        Some(points)
+    }
+
+    /// A module that also has the functions that nothing calls, if there are any.
+    fn place_uncalled(&mut self) -> Option<Option<Module>> {
+        let called: BTreeSet<Handle<Function>> =
+            self.handles.keys().map(|(handle, _)| *handle).collect();
+        let mut variables = self.module.global_variables.clone();
+        let mut uncalled = Vec::new();
+        for (handle, function) in self.module.functions.iter() {
+            if !called.contains(&handle) {
+                uncalled.push((handle, own_places(self.module, function, &mut variables)?));
+            }
+        }
+        for (handle, places) in &uncalled {
+            self.function(*handle, places)?;
+        }
+        Some((!uncalled.is_empty()).then(|| self.module(Vec::new(), variables)))
+    }
+
+    /// A module of what is made so far.
+    fn module(&self, entry_points: Vec<EntryPoint>, variables: Arena<GlobalVariable>) -> Module {
+        let Module {
+            types: _,
+            special_types,
+            constants,
+            overrides,
+            global_variables: _,
+            global_expressions,
+            functions: _,
+            entry_points: _,
+            diagnostic_filters,
+            diagnostic_filter_leaf,
+            doc_comments,
+        } = self.module.clone();
+        Module {
+            types: self.types.clone(),
+            special_types,
+            constants,
+            overrides,
+            global_variables: variables,
+            global_expressions,
+            functions: self.functions.clone(),
+            entry_points,
+            diagnostic_filters,
+            diagnostic_filter_leaf,
+            doc_comments,
+        }
+    }
+
     /// The function with its pointers at these places.
     fn function(
         &mut self,
@@ -227,10 +254,13 @@ impl MadeFunctions<'_> {
         if let Some(known) = self.handles.get(&key) {
             return Some(*known);
         }
-        let function = self.rewritten(&self.module.functions[old], at)?;
-        if self.functions.len() >= MOST {
+        let function = &self.module.functions[old];
+        self.expressions += function.expressions.len();
+        if self.expressions > PLACED_EXPRESSIONS {
+            self.excess = Some(self.module.functions.get_span(old));
             return None;
         }
+        let function = self.rewritten(function, at)?;
         let made = self.functions.append(function, self.module.functions.get_span(old));
         self.handles.insert(key, made);
         Some(made)

@@ -29,10 +29,9 @@ pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
     }
     if diagnostic.labels.is_empty() {
         let message = |text: &str| Some(parse_wgsl(text).err()?.message().to_owned());
-        let range = place_of_error(&composed.text, &message);
-        let known = range.is_some();
-        diagnostic =
-            label_or_note(diagnostic, composed, range, if known { "in this part" } else { "here" });
+        if let Some(range) = place_of_error(&composed.text, &message) {
+            diagnostic = label_or_note(diagnostic, composed, Some(range), "in this part");
+        }
     }
     diagnostic =
         error.notes().fold(diagnostic, |diagnostic, note| diagnostic.note(as_sentence(note)));
@@ -42,6 +41,7 @@ pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
     }
 }
 
+/// How naga's sentence begins before the types of operands.
 const OPERANDS: &str = "Incompatible operands";
 
 /// How naga's sentences begin before a name that nothing declares.

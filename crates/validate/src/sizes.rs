@@ -9,6 +9,7 @@ use naga::{
     TypeInner,
 };
 
+use super::uses::functions;
 use lamplight_files::limits::{PADDING_BYTES, TYPE_NESTING, VALUE_SCALARS};
 
 /// A type or a value that is too large.
@@ -102,9 +103,7 @@ impl Sizes<'_> {
 
     /// The first value at which the total number of scalars is too large.
     fn values(&self) -> Option<Large> {
-        let functions = self.module.functions.iter().map(|(_, function)| function);
-        let points = self.module.entry_points.iter().map(|point| &point.function);
-        let of_functions = functions.chain(points).flat_map(|function| self.of_function(function));
+        let of_functions = functions(self.module).flat_map(|function| self.of_function(function));
         let mut left = VALUE_SCALARS;
         self.of_module().chain(of_functions).find_map(|value| {
             let scalars = self.scalars_of(value.ty);

@@ -41,7 +41,7 @@ pub const TARGET: TargetEntry = TargetEntry {
 const SIZES_BUFFER: u8 = 30;
 
 fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
-    let plainer = invariants::without_invariant_inputs(source.module);
+    let plainer = invariants::without_invariant_inputs(source.module, source.stage);
     let source = &EmitSource { module: plainer.as_ref().unwrap_or(source.module), ..*source };
     let options = Options {
         lang_version: (2, 0),

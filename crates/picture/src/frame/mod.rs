@@ -22,8 +22,7 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_emit::reflect;
 use lamplight_permute::manifest::{ManifestFile, Program};
 use lamplight_permute::{Manifest, Settings};
-use lamplight_validate::{Validated, validate};
-use lamplight_validate::{inner_blocks, inner_blocks_mut};
+use lamplight_validate::{Validated, functions, inner_blocks, inner_blocks_mut, validate};
 use naga::{
     AddressSpace, Arena, BinaryOperator, Block, Expression, Function, GlobalVariable, Handle,
     Literal, LocalVariable, MemoryDecorations, Module, Range, Scalar, Span, Statement, Type,
@@ -403,9 +402,7 @@ fn trip_counter(ty: Handle<Type>) -> GlobalVariable {
 }
 
 fn has_derivatives(module: &Module) -> bool {
-    let functions = module.functions.iter().map(|(_, function)| function);
-    let mut all = functions.chain(module.entry_points.iter().map(|point| &point.function));
-    all.any(|function| {
+    functions(module).any(|function| {
         function.expressions.iter().any(|(_, expression)| {
             matches!(expression, Expression::Derivative { .. } | Expression::ImageSample { .. })
         })

@@ -81,10 +81,9 @@ impl<'t, 'm, 'a> Constants<'t, 'm, 'a> {
                 self.declared(local.of_type, local.constant?, depth)
             }
             ExprKind::Name { name, template, local: None } if template.is_empty() => {
-                (self.module.find(name) == Some(Global::Constant)).then_some(())?;
-                let mut declared = tree.declarations.iter();
-                let found =
-                    declared.find(|own| own.name == *name && own.kind == DeclarationKind::Const)?;
+                let Some(Global::Constant(at)) = self.module.find(name) else { return None };
+                let found = &tree.declarations[at];
+                (found.kind == DeclarationKind::Const).then_some(())?;
                 self.declared(found.of_type, found.value?, depth)
             }
             ExprKind::Call { callee, template, arguments } => {

@@ -51,7 +51,7 @@ pub fn fold(text: &str) -> Option<String> {
     let module = Module::read(&tree);
     let constants = Constants::of(&module);
     let prefix = ["c", "k", "q", "folded_"].into_iter().find(|prefix| is_free(text, prefix))?;
-    let mut folded = text.to_owned();
+    let (mut folded, mut declared) = (text.as_bytes().to_vec(), String::new());
     let (mut count, mut first_replaced) = (0, u32::MAX);
     // An expression comes after those in it, so the outermost is found first.
     for (id, expression) in tree.expressions.iter().enumerate().rev() {
@@ -60,15 +60,17 @@ pub fn fold(text: &str) -> Option<String> {
         }
         let Some(value) = constants.value(id as u32) else { continue };
         let name = format!("{prefix}{count}");
-        let place = expression.place.range();
-        if name.len() > place.len() {
+        let call = folded.get_mut(expression.place.range())?;
+        if name.len() > call.len() {
             continue;
         }
-        folded.replace_range(place.clone(), &format!("{name:<width$}", width = place.len()));
-        let _ = write!(folded, "\nconst {name} = {};", value.text());
+        call.fill(b' ');
+        call[..name.len()].copy_from_slice(name.as_bytes());
+        let _ = write!(declared, "\nconst {name} = {};", value.text());
         (count, first_replaced) = (count + 1, expression.place.start);
     }
-    (count > 0).then_some(folded)
+    let folded = String::from_utf8(folded).ok().filter(|_| count > 0)?;
+    Some(folded + &declared)
 }
 
 /// Whether no name of a text is the prefix with digits.
