@@ -119,7 +119,11 @@ export class Bundle {
   }
 
   program(name) {
-    return this.meta.programs[name] ?? notFound("program", name, this.programs);
+    const found = this.meta.programs[name] ?? notFound("program", name, this.programs);
+    const isWhole = [found.axes, found.entries].every(Array.isArray) &&
+      found.axes.every((axis) => Array.isArray(axis?.values)) &&
+      found.entries.every((entry) => entry?.keys);
+    return isWhole ? found : damaged("a program has no axes, no entry points or no keys");
   }
 
   /** What all permutations of a program in one language bind together. */
