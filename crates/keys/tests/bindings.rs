@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 
-use lamplight_bundle::{Bundle, EntryContents, Error, Language};
+use lamplight_bundle::{Binding, Bundle, EntryContents, Error, Language};
 use lamplight_keys::bindings::{self, Request};
 use libtest_mimic::{Failed, Trial};
 
@@ -90,6 +90,10 @@ pub fn tests() -> Vec<Trial> {
     tests.extend(HARNESSES.iter().map(|harness| {
         let name = format!("bindings::other_layouts_do_not_compile::{}", harness.name);
         Trial::test(name, || refuses(harness))
+    }));
+    tests.extend(HARNESSES.iter().map(|harness| {
+        let name = format!("bindings::hard_names_compile::{}", harness.name);
+        Trial::test(name, || compiles_hard_names(harness))
     }));
     tests.push(Trial::test("bindings::typescript", typescript));
     tests.push(
@@ -216,17 +220,11 @@ fn unknown() -> Outcome {
 
 /// Members at the end of what 32 bits can say give a text in every language.
 fn members_out_of_range() -> Outcome {
-    let mut contents = bundle()?.contents()?;
-    for entries in contents.programs.values_mut().flat_map(|found| found.languages.values_mut()) {
-        for entry in entries.values_mut() {
-            *entry = with_far_members(entry)?;
-        }
-    }
-    let folder = tempfile::tempdir()?;
-    lamplight_bundle::write_directory(&contents, folder.path())?;
-    let bundle = Bundle::open(folder.path())?;
+    let changed = changed_bundle(|binding| {
+        binding.members.iter_mut().for_each(|member| member.offset = u32::MAX - 3);
+    })?;
     for language in bindings::LANGUAGES {
-        let text = bindings::write(&bundle, &Request::default(), language)?;
+        let text = bindings::write(&changed, &Request::default(), language)?;
         if !text.contains("clip_from_world") {
             return Err(format!("{}: {text}", language.name).into());
         }
@@ -234,16 +232,47 @@ fn members_out_of_range() -> Outcome {
     Ok(())
 }
 
-fn with_far_members(entry: &EntryContents) -> Result<EntryContents, Failed> {
-    let mut changed = EntryContents::default();
-    for (key, hash) in &entry.keys {
-        let mut unit = entry.units.get(hash).ok_or("no unit")?.clone();
-        let bindings = &mut Arc::make_mut(&mut unit.reflection).bindings;
-        for member in bindings.iter_mut().flat_map(|binding| &mut binding.members) {
-            member.offset = u32::MAX - 3;
+/// Names of shaders that mean something else in the language of an engine, or have another style.
+fn compiles_hard_names(harness: &Harness) -> Outcome {
+    let changed = changed_bundle(|binding| {
+        for member in &mut binding.members {
+            let name = match member.name.as_str() {
+                "clip_from_world" => "clipFromWorld",
+                "normal" => "compl",
+                _ => "fn",
+            };
+            member.name = name.to_owned();
         }
-        let hash = changed.add(unit)?;
-        changed.keys.insert(key.clone(), hash);
+        binding.name = if binding.name == "camera" { "not_eq" } else { "loop" }.to_owned();
+    })?;
+    let language = bindings::find(harness.language).ok_or("no such language")?;
+    let text = bindings::write(&changed, &Request::default(), language)?;
+    let main = match harness.language {
+        "rust" => "mod made { include!(\"lit.rs\"); }\nfn main() {}\n",
+        _ => "#include \"lit.h\"\nint main(void) { return 0; }\n",
+    };
+    compiled(&Harness { main: (harness.main.0, main), ..*harness }, &text).map(drop)
+}
+
+/// The bundle with other bindings, and its program `lit` by the name `new`.
+fn changed_bundle(change: impl Fn(&mut Binding)) -> Result<Bundle, Failed> {
+    let mut contents = bundle()?.contents()?;
+    let lit = contents.programs.remove("lit").ok_or("no program `lit`")?;
+    contents.programs.insert("new".to_owned(), lit);
+    for entries in contents.programs.values_mut().flat_map(|found| found.languages.values_mut()) {
+        for entry in entries.values_mut() {
+            let mut changed = EntryContents::default();
+            for (key, hash) in &entry.keys {
+                let mut unit = entry.units.get(hash).ok_or("no unit")?.clone();
+                Arc::make_mut(&mut unit.reflection).bindings.iter_mut().for_each(&change);
+                let hash = changed.add(unit)?;
+                changed.keys.insert(key.clone(), hash);
+            }
+            *entry = changed;
+        }
     }
-    Ok(changed)
+    let folder = tempfile::tempdir()?;
+    lamplight_bundle::write_directory(&contents, folder.path())?;
+    // Everything but the shaders is read at once.
+    Ok(Bundle::open(folder.path())?)
 }

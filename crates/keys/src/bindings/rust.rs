@@ -10,9 +10,10 @@ use crate::rust::KEYWORDS;
 
 pub const LANGUAGE: BindingLanguage = BindingLanguage { name: "rust", write };
 
-/// The generated code has these: an engine uses only some of the items, and formatting its sources
-/// must not make the file differ from what `--check` compares it with.
-const ATTRIBUTES: &str = "#[allow(dead_code)]\n#[rustfmt::skip]";
+/// The generated code has these: an engine uses only some of the items, names are those of the shaders,
+/// and formatting its sources must not make the file differ from what `--check` compares it with.
+const ATTRIBUTES: &str = "#[allow(dead_code, non_snake_case, non_camel_case_types, clippy::all)]\n\
+                          #[rustfmt::skip]";
 
 fn write(request: &Request<'_>, programs: &[ProgramModel]) -> String {
     let mut taken = Taken::new(KEYWORDS);
