@@ -19,6 +19,8 @@
 if(CMAKE_VERSION VERSION_LESS 3.21)
   message(FATAL_ERROR "Lamplight needs CMake 3.21 or later")
 endif()
+# For the function below, whatever the project asks for: paths in DEPFILE depend on it.
+cmake_policy(VERSION 3.21)
 
 find_program(LAMPLIGHT_PROGRAM lamplight DOC "The command `lamplight`")
 if(NOT LAMPLIGHT_PROGRAM)

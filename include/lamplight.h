@@ -30,13 +30,13 @@ extern "C" {
 
 /* The longest key, in bytes, and the most axes of a program. */
 #define LAMPLIGHT_KEY_BYTES 1024
-#define LAMPLIGHT_AXES 64
+#define LAMPLIGHT_AXES 128
 
 /* What functions return. */
 enum {
     LAMPLIGHT_OK = 0,
     LAMPLIGHT_CORRUPT = -1,   /* damaged, or no bundle at all */
-    LAMPLIGHT_NEWER = -2,     /* of another version of the format */
+    LAMPLIGHT_FORMAT = -2,    /* of an older or a newer version of the format */
     LAMPLIGHT_NOT_FOUND = -3, /* no such program, entry point or target */
     LAMPLIGHT_BAD_KEY = -4,   /* the key names an axis or a value that there is not */
     LAMPLIGHT_MISS = -5,      /* the bundle has no such permutation */
@@ -57,7 +57,7 @@ typedef size_t (*lamplight_decompress)(void *user, void *out, size_t size, const
  * to `out`. Returns how many there were. */
 typedef size_t (*lamplight_read_file)(void *user, const char *name, void *out, size_t size);
 
-/* A text of the bundle: UTF-8 with a zero after it. */
+/* Values in binary form, in the bytes of the bundle. */
 typedef struct lamplight_tree {
     const uint8_t *roots, *texts, *words, *bytes;
     uint32_t root_count, text_count, word_count, byte_count;
@@ -177,7 +177,7 @@ int lamplight_is_null(lamplight_value value);
 int lamplight_is_true(lamplight_value value);
 /* A whole number; `otherwise` where it is none, or does not fit. */
 int64_t lamplight_number(lamplight_value value, int64_t otherwise);
-/* A text; null where it is none. */
+/* A text in UTF-8, with a zero after it; null where the value is none. */
 const char *lamplight_text(lamplight_value value);
 
 #ifdef __cplusplus
@@ -488,6 +488,9 @@ enum { LAMPLIGHT__META, LAMPLIGHT__KEYS, LAMPLIGHT__UNITS, LAMPLIGHT__VALUES, LA
 
 #define LAMPLIGHT__HEADER (24 + 6 * 32 + 16)
 
+/* The most bytes of a blob, and of a group after decompression. */
+#define LAMPLIGHT__MOST_BYTES ((uint32_t)16 << 20)
+
 static int lamplight__header(lamplight *bundle) {
     const uint8_t *bytes = bundle->bytes;
     size_t next = LAMPLIGHT__HEADER, i;
@@ -496,7 +499,7 @@ static int lamplight__header(lamplight *bundle) {
         return lamplight__fail(bundle, LAMPLIGHT_CORRUPT, "this is not a Lamplight bundle", "", "");
     if (lamplight__u32(bytes + 8) != LAMPLIGHT_VERSION) {
         snprintf(number, sizeof number, "%lu", (unsigned long)lamplight__u32(bytes + 8));
-        return lamplight__fail(bundle, LAMPLIGHT_NEWER, "the bundle has format version ", number,
+        return lamplight__fail(bundle, LAMPLIGHT_FORMAT, "the bundle has format version ", number,
                                ", and this reader reads version 2");
     }
     if (bundle->size < LAMPLIGHT__HEADER) return lamplight__damaged(bundle, "it is cut off");
@@ -573,9 +576,11 @@ static uint32_t lamplight__position(lamplight_value list, const char *text, size
     return UINT32_MAX;
 }
 
+static int lamplight__is_blank(char byte) { return byte == ' ' || (byte >= '\t' && byte <= '\r'); }
+
 static const char *lamplight__trim(const char *start, const char *end, size_t *length) {
-    while (start < end && (*start == ' ' || *start == '\t')) start++;
-    while (end > start && (end[-1] == ' ' || end[-1] == '\t')) end--;
+    while (start < end && lamplight__is_blank(*start)) start++;
+    while (end > start && lamplight__is_blank(end[-1])) end--;
     *length = (size_t)(end - start);
     return start;
 }
@@ -860,6 +865,8 @@ static int lamplight__blob(lamplight *bundle, uint32_t blob, const char *extensi
     memcpy(shader->hash, record + 12, 16);
     shader->group_size = 0;
     shader->file[0] = 0;
+    if (shader->size > LAMPLIGHT__MOST_BYTES)
+        return lamplight__damaged(bundle, "a blob is too large");
     if (shader->group == UINT32_MAX) {
         char name[17];
         for (i = 0; i < 8; i++) {
@@ -880,7 +887,7 @@ static int lamplight__blob(lamplight *bundle, uint32_t blob, const char *extensi
     record = bundle->bytes + bundle->offset[LAMPLIGHT__BLOBS] + (size_t)bundle->blob_count * 28 +
              (size_t)shader->group * 32;
     shader->group_size = lamplight__u32(record + 12);
-    if (shader->group_size > 16u << 20 || shader->offset > shader->group_size ||
+    if (shader->group_size > LAMPLIGHT__MOST_BYTES || shader->offset > shader->group_size ||
         shader->size > shader->group_size - shader->offset)
         return lamplight__damaged(bundle, "a blob is out of range");
     return LAMPLIGHT_OK;

@@ -81,18 +81,18 @@ static int lamplight__gl_macros(const lamplight_shader *shader, char *text, size
 }
 
 /* Compiles a text, with the macros after its first line, which has the version. */
-static GLuint lamplight__gl_compile(const lamplight_shader *shader, GLenum stage, const char *text) {
-    char macros[2048];
-    const char *line = (const char *)memchr(text, '\n', shader->size), *parts[3];
+static GLuint lamplight__gl_compile(GLenum stage, const char *text, size_t size,
+                                    const char *macros) {
+    const char *line = (const char *)memchr(text, '\n', size), *parts[3];
+    size_t first = line ? (size_t)(line + 1 - text) : size;
     GLint lengths[3];
     GLuint made = glCreateShader(stage);
-    if (!line || !lamplight__gl_macros(shader, macros, sizeof macros)) return made;
     parts[0] = text;
     parts[1] = macros;
-    parts[2] = line + 1;
-    lengths[0] = (GLint)(line + 1 - text);
+    parts[2] = text + first;
+    lengths[0] = (GLint)first;
     lengths[1] = (GLint)strlen(macros);
-    lengths[2] = (GLint)shader->size - lengths[0];
+    lengths[2] = (GLint)(size - first);
     glShaderSource(made, 3, parts, lengths);
     glCompileShader(made);
     return made;
@@ -102,6 +102,7 @@ static int lamplight__gl_stage(lamplight *bundle, const lamplight_shader *shader
                                GLuint *made) {
     size_t work = lamplight_work_size(shader);
     char *memory = (char *)LAMPLIGHT_MALLOC(shader->size + work + 1);
+    char macros[2048];
     int code;
     GLint is_compiled = 0;
     *made = 0;
@@ -109,8 +110,10 @@ static int lamplight__gl_stage(lamplight *bundle, const lamplight_shader *shader
         return lamplight__fail(bundle, LAMPLIGHT_ROOM, "there is no memory for a shader", "", "");
     if (!bundle->decompress) bundle->decompress = lamplight_unzstd;
     code = lamplight_read(bundle, shader, memory, shader->size, memory + shader->size, work);
+    if (!code && !lamplight__gl_macros(shader, macros, sizeof macros))
+        code = lamplight__fail(bundle, LAMPLIGHT_ROOM, "a shader has too many constants", "", "");
     if (!code) {
-        *made = lamplight__gl_compile(shader, stage, memory);
+        *made = lamplight__gl_compile(stage, memory, shader->size, macros);
         glGetShaderiv(*made, GL_COMPILE_STATUS, &is_compiled);
         if (!is_compiled) {
             char log[512] = "";

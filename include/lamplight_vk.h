@@ -44,7 +44,8 @@ uint32_t lamplight_vk_bindings(lamplight_value layout, uint32_t set,
 VkDescriptorType lamplight_vk_descriptor(const lamplight_binding *binding);
 
 /* Attributes of a vertex stage in one buffer without padding. Returns how many there are; writes at
- * most `most`. `stride` becomes the bytes of a vertex. */
+ * most `most`. `stride` becomes the bytes of a vertex. Built-in inputs, and inputs of types other than
+ * `f32`, `i32` and `u32`, are left out. */
 uint32_t lamplight_vk_attributes(const lamplight_shader *vertex,
                                  VkVertexInputAttributeDescription *out, uint32_t most,
                                  uint32_t *stride);
@@ -162,7 +163,7 @@ uint32_t lamplight_vk_bindings(lamplight_value layout, uint32_t set,
     return count;
 }
 
-static VkFormat lamplight__vk_format(const char *scalar, uint32_t rows) {
+static VkFormat lamplight__vk_format(lamplight_value shape, uint32_t rows) {
     static const VkFormat formats[3][4] = {
         {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32_SFLOAT,
          VK_FORMAT_R32G32B32A32_SFLOAT},
@@ -170,8 +171,12 @@ static VkFormat lamplight__vk_format(const char *scalar, uint32_t rows) {
          VK_FORMAT_R32G32B32A32_SINT},
         {VK_FORMAT_R32_UINT, VK_FORMAT_R32G32_UINT, VK_FORMAT_R32G32B32_UINT,
          VK_FORMAT_R32G32B32A32_UINT}};
-    if (!scalar || rows < 1 || rows > 4) return VK_FORMAT_UNDEFINED;
-    return formats[scalar[0] == 'f' ? 0 : scalar[0] == 'i' ? 1 : 2][rows - 1];
+    static const char *const scalars[3] = {"f32", "i32", "u32"};
+    int i;
+    if (rows < 1 || rows > 4) return VK_FORMAT_UNDEFINED;
+    for (i = 0; i < 3; i++)
+        if (lamplight__is(lamplight_field(shape, "scalar"), scalars[i])) return formats[i][rows - 1];
+    return VK_FORMAT_UNDEFINED;
 }
 
 uint32_t lamplight_vk_attributes(const lamplight_shader *vertex,
@@ -184,13 +189,13 @@ uint32_t lamplight_vk_attributes(const lamplight_shader *vertex,
         lamplight_value input = lamplight_item(inputs, i);
         lamplight_value location = lamplight_field(input, "location");
         lamplight_value shape = lamplight_field(input, "shape");
-        uint32_t rows = (uint32_t)lamplight_number(lamplight_field(shape, "rows"), 1) & 7;
-        if (lamplight_is_null(location)) continue;
+        uint32_t rows = (uint32_t)lamplight_number(lamplight_field(shape, "rows"), 1);
+        VkFormat format = lamplight__vk_format(shape, rows);
+        if (lamplight_is_null(location) || format == VK_FORMAT_UNDEFINED) continue;
         if (count < most) {
             out[count].location = lamplight__natural(location);
             out[count].binding = 0;
-            out[count].format =
-                lamplight__vk_format(lamplight_text(lamplight_field(shape, "scalar")), rows);
+            out[count].format = format;
             out[count].offset = *stride;
         }
         *stride += 4 * rows;

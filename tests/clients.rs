@@ -3,6 +3,8 @@
 //! `@lamplight/bundle`. All 18 keys give the same pictures, but for edges. A client with a mistake
 //! gives another one. What each client does for Lamplight has few lines.
 
+mod cmake;
+mod layouts;
 mod rust_wgpu;
 
 use std::collections::BTreeMap;
@@ -36,6 +38,8 @@ pub fn tests() -> Vec<Trial> {
     let mut tests = vec![
         Trial::test("clients::draw_the_same", draw_the_same),
         Trial::test("clients::mistakes_are_seen", mistakes_are_seen),
+        cmake::test(),
+        Trial::test("clients::layouts_fit_their_shaders", layouts::fit),
     ];
     tests.extend(
         ["gl.c", "vk.c", "rust_wgpu.rs", "web_gpu.mjs", "web_gl2.mjs"].map(|name| {

@@ -6,11 +6,11 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::input::LanguageName;
-use super::overwrite::Overwrite;
+use super::overwrite::{Overwrite, compare_file};
 use super::terminal::write_data;
 use crate::bundle::{self, Bundle};
 use crate::keys::bindings::{self, BindingLanguage, LANGUAGES, Request};
-use crate::{input, output};
+use crate::output;
 
 /// Write structures of uniform blocks, numbers of bindings and locations of inputs for C, C++, Rust
 /// or TypeScript.
@@ -77,14 +77,4 @@ fn embedded_name(path: &Path) -> String {
         None | Some("bundle") => "lamplight_bundle".to_owned(),
         Some(stem) => format!("{stem}_bundle"),
     }
-}
-
-fn compare_file(path: &Path, text: &str) -> Result<(), Failure> {
-    if input::read_file(path, text.len() as u64).is_ok_and(|known| known == text.as_bytes()) {
-        return Ok(());
-    }
-    Err(Failure::check(format!(
-        "`{}` is not up to date: run the command without `--check`",
-        path.display()
-    )))
 }

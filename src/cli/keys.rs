@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, print_warnings};
-use super::overwrite::Overwrite;
+use super::overwrite::{Overwrite, compare_file};
 use super::terminal::write_data;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::input;
 use crate::keys::{self, KeyLanguage, LANGUAGES};
 use crate::output::{self, Replace};
 use crate::permute::{Lock, Manifest};
@@ -142,14 +141,8 @@ fn extended_lock(lock: &Lock, manifest: &Manifest) -> Lock {
 }
 
 fn write_or_check(path: &Path, text: &str, check: bool, replace: Replace) -> Result<(), Failure> {
-    if !check {
-        return Ok(output::write_file(path, text.as_bytes(), keys::is_written, replace)?);
+    match check {
+        true => compare_file(path, text),
+        false => Ok(output::write_file(path, text.as_bytes(), keys::is_written, replace)?),
     }
-    if input::read_file(path, text.len() as u64).is_ok_and(|known| known == text.as_bytes()) {
-        return Ok(());
-    }
-    Err(Failure::check(format!(
-        "`{}` is not up to date: run the command without `--check`",
-        path.display()
-    )))
 }

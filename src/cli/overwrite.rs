@@ -8,8 +8,8 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::terminal::stderr;
-use crate::bundle;
 use crate::output::{Error, Foreign, Replace, Turns};
+use crate::{bundle, input};
 
 /// What may be replaced.
 #[derive(Args, Clone)]
@@ -44,6 +44,17 @@ impl From<Error> for Failure {
             error => Self::environment(format!("cannot write {error}")),
         }
     }
+}
+
+/// Fails if a file that a command writes has another text.
+pub fn compare_file(path: &Path, text: &str) -> Result<(), Failure> {
+    if input::read_file(path, text.len() as u64).is_ok_and(|known| known == text.as_bytes()) {
+        return Ok(());
+    }
+    Err(Failure::check(format!(
+        "`{}` is not up to date: run the command without `--check`",
+        path.display()
+    )))
 }
 
 /// How long to wait for another run.

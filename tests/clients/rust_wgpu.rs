@@ -34,8 +34,8 @@ const IMAGE: [[u8; 3]; 12] = [
 ];
 
 /// A device with what all pictures have in common.
-struct Scene {
-    device: wgpu::Device,
+pub struct Scene {
+    pub device: wgpu::Device,
     queue: wgpu::Queue,
     vertices: wgpu::Buffer,
     target: wgpu::Texture,
@@ -103,7 +103,7 @@ fn lamps_block(binding: &Binding) -> Result<Block<'_>, Failed> {
 }
 
 impl Scene {
-    fn open() -> Result<Self, Failed> {
+    pub fn open() -> Result<Self, Failed> {
         let descriptor = wgpu::InstanceDescriptor {
             backends: wgpu::Backends::VULKAN,
             ..wgpu::InstanceDescriptor::new_without_display_handle()

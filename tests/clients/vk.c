@@ -143,19 +143,25 @@ static void change_layout(VkCommandBuffer commands, VkImage texture, VkImageAspe
                          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
+/* A copy between a buffer and all of an image. */
+static VkBufferImageCopy whole_copy(VkImageAspectFlags aspect, uint32_t width, uint32_t height) {
+    VkBufferImageCopy copy = {0};
+    copy.imageSubresource.aspectMask = aspect;
+    copy.imageSubresource.layerCount = 1;
+    copy.imageExtent.width = width;
+    copy.imageExtent.height = height;
+    copy.imageExtent.depth = 1;
+    return copy;
+}
+
 /* A texture of these bytes. */
 static image make_texture(VkFormat format, VkImageAspectFlags aspect, uint32_t width,
                           uint32_t height, const void *bytes, size_t size) {
     image made = make_image(format, width, height,
                             VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, aspect);
     VkBuffer from = make_buffer(VK_BUFFER_USAGE_TRANSFER_SRC_BIT, bytes, size, NULL);
-    VkBufferImageCopy copy = {0};
+    VkBufferImageCopy copy = whole_copy(aspect, width, height);
     VkCommandBuffer commands = begin_commands();
-    copy.imageSubresource.aspectMask = aspect;
-    copy.imageSubresource.layerCount = 1;
-    copy.imageExtent.width = width;
-    copy.imageExtent.height = height;
-    copy.imageExtent.depth = 1;
     change_layout(commands, made.image, aspect, VK_IMAGE_LAYOUT_UNDEFINED,
                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     vkCmdCopyBufferToImage(commands, from, made.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
@@ -328,13 +334,8 @@ static void draw(VkRenderPass pass, VkFramebuffer frame, VkPipeline pipeline,
     VkRenderPassBeginInfo begin = {VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO, NULL, pass, frame,
                                    {{0, 0}, {WIDTH, HEIGHT}}, 1, &clear};
     VkDeviceSize start = 0;
-    VkBufferImageCopy copy = {0};
+    VkBufferImageCopy copy = whole_copy(VK_IMAGE_ASPECT_COLOR_BIT, WIDTH, HEIGHT);
     VkCommandBuffer commands = begin_commands();
-    copy.imageSubresource.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
-    copy.imageSubresource.layerCount = 1;
-    copy.imageExtent.width = WIDTH;
-    copy.imageExtent.height = HEIGHT;
-    copy.imageExtent.depth = 1;
     vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 2, sets, 0, NULL);

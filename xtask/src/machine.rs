@@ -34,6 +34,9 @@ const NEEDS: &[Need] = &[
     },
     Need { package: "nodejs", what: "node, for the typed keys", found: || program("node") },
     Need { package: "gcc", what: "cc, for clients in C", found: || program("cc") },
+    Need { package: "g++", what: "g++, for readers in C++", found: || program("g++") },
+    Need { package: "cmake", what: "CMake, for its package", found: || program("cmake") },
+    Need { package: "make", what: "make, for projects of CMake", found: || program("make") },
     Need {
         package: "libegl-dev",
         what: "the headers of EGL",

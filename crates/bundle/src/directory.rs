@@ -175,9 +175,7 @@ impl Directory {
             .get(entry)
             .ok_or_else(|| Error::corrupt(MANIFEST, "an entry point is out of range"))
     }
-}
 
-impl Directory {
     /// Reads every blob, on several threads: most of the time is spent in opening files.
     ///
     /// # Errors
@@ -205,12 +203,12 @@ impl Directory {
             })
         })
     }
-}
 
-impl Directory {
     /// Refuses the index of another bundle that is not whole.
     fn verify_other_index(&self, index: Vec<u8>) -> Result<(), Error> {
-        for (blob, extension) in file::from_bytes(index)?.outputs()? {
+        let index = file::from_bytes(index)?;
+        index.verify_index()?;
+        for (blob, extension) in index.outputs()? {
             let name = blob_file_name(&blob, &extension)
                 .ok_or_else(|| Error::corrupt(INDEX, format!("`{blob}` does not name a blob")))?;
             let part = format!("{BLOBS}/{name}");

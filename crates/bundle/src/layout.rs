@@ -12,7 +12,8 @@
 //! BLOBS     per blob: group, offset, length, checksum; per group: offset, lengths, checksum
 //! DATA      groups, zstd, without gaps
 //! ```
-//! [`super::tree`] says what a tree is. Integers are little-endian, of 32 bits unless said otherwise; nothing is aligned.
+//! [`super::tree`] says what a tree is. Integers are little-endian, of 32 bits unless said otherwise;
+//! nothing is aligned.
 
 use std::collections::BTreeMap;
 

@@ -124,8 +124,8 @@ fn add_binding(place: Entry<'_, Slot, LayoutBinding>, binding: &Binding, stage: 
 
 fn widen_binding(known: &mut Binding, other: &Binding) {
     if other.size > known.size {
-        let (writable, texture) = (known.writable, known.texture.take());
-        *known = Binding { writable, texture, ..other.clone() };
+        let (writable, count, texture) = (known.writable, known.count, known.texture.take());
+        *known = Binding { writable, count, texture, ..other.clone() };
     }
     known.count = known.count.max(other.count);
     known.writable |= other.writable;
@@ -244,6 +244,20 @@ mod tests {
         assert!(layout[0].when.is_empty());
         assert_eq!(layout[1].binding, texture(SampleType::Float, "2d"));
         assert!(layout[1].when.is_empty(), "each value occurs with it: {:?}", layout[1].when);
+    }
+
+    /// The size of one permutation, and the number of bindings of the other.
+    #[test]
+    fn sizes_and_counts_are_apart() {
+        let many = with(Stage::Vertex, vec![Binding { count: Some(4), ..buffer(0, 16) }]);
+        let large = with(Stage::Vertex, vec![Binding { count: Some(2), ..buffer(0, 32) }]);
+        for reflections in [[&many, &large], [&large, &many]] {
+            let reflections =
+                vec![(reflections[0], vec!["default"]), (reflections[1], vec!["fog"])];
+            let layout = program_layout(&axes(), &[EntryKeys { reflections }]);
+            let binding = &layout[0].binding;
+            assert_eq!((binding.size, binding.count), (Some(32), Some(4)));
+        }
     }
 
     #[test]

@@ -104,7 +104,7 @@ pub struct Binding {
     /// The size of a buffer, without the elements of a runtime-sized array at its end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<u32>,
-    /// Whether the shader writes to it.
+    /// Whether the shader writes to it, or declares a buffer as `read_write`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub writable: bool,
     /// The type of a buffer that is no struct, as numbers.

@@ -6,6 +6,7 @@
 
 mod c;
 mod damaged;
+mod frames;
 mod javascript;
 mod set;
 mod transcript;
@@ -22,6 +23,7 @@ pub fn tests() -> Vec<Trial> {
     let mut tests = vec![Trial::test("readers::set_is_current", set_is_current)];
     tests.extend(c::tests());
     tests.extend(javascript::tests());
+    tests.extend(frames::tests());
     tests
 }
 

@@ -2,7 +2,9 @@
 
 use naga::proc::Layouter;
 use naga::valid::{FunctionInfo, GlobalUse};
-use naga::{AddressSpace, GlobalVariable, Handle, ImageClass, Module, Type, TypeInner};
+use naga::{
+    AddressSpace, GlobalVariable, Handle, ImageClass, Module, StorageAccess, Type, TypeInner,
+};
 
 use super::names::{builtin_name, interpolation_name, sampling_name, type_name};
 use super::shapes::{is_filtering, shape_of, texture_shape};
@@ -175,11 +177,17 @@ fn make_binding(
         ty: type_name(module, variable.ty),
         count: binding_count(module, variable.ty),
         size: is_buffer.then(|| layouter[element].size),
-        writable: usage.contains(GlobalUse::WRITE),
+        writable: usage.contains(GlobalUse::WRITE) || is_declared_writable(variable),
         shape: if is_buffer { shape_of(module, element) } else { None },
         texture: texture_shape(module, element, is_filtered),
         members: if is_buffer { struct_members(module, element, layouter) } else { Vec::new() },
     })
+}
+
+/// Whether a buffer is declared as one that may be written. Layouts of WebGPU need that, whatever the
+/// entry point does with it.
+fn is_declared_writable(variable: &GlobalVariable) -> bool {
+    matches!(variable.space, AddressSpace::Storage { access } if access.contains(StorageAccess::STORE))
 }
 
 /// The type of what is bound, of one element where it is an array of bindings.

@@ -13,10 +13,11 @@ pub const LANGUAGE: KeyLanguage =
 
 /// Keywords that are valid names of axes. `r#` would not work for all of them.
 pub const KEYWORDS: &[&str] = &[
-    "Self", "abstract", "as", "async", "await", "become", "box", "crate", "do", "dyn", "enum",
-    "extern", "final", "gen", "impl", "in", "macro", "match", "mod", "move", "mut", "priv", "pub",
-    "ref", "self", "static", "super", "trait", "try", "type", "typeof", "unsafe", "unsized", "use",
-    "virtual", "where", "yield",
+    "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
+    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "priv", "pub", "ref",
+    "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
+    "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
 ];
 
 fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {

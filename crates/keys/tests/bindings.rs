@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
 
-use lamplight_bundle::{Bundle, Error};
+use lamplight_bundle::{Binding, Bundle, EntryContents, Error, Language};
 use lamplight_keys::bindings::{self, Request};
 use libtest_mimic::{Failed, Trial};
 
@@ -55,43 +56,29 @@ fn main() {
 
 const WARNINGS: &[&str] = &["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 
+const RUSTC: [&str; 5] = ["rustc", "--edition", "2024", "-Dwarnings", "-Cdebuginfo=0"];
+
 const HARNESSES: [Harness; 5] = [
-    Harness {
-        name: "gcc_c99",
-        language: "c",
-        file: "lit.h",
-        main: ("main.c", C_MAIN),
-        command: &["gcc", "-std=c99"],
-    },
-    Harness {
-        name: "clang_c11",
-        language: "c",
-        file: "lit.h",
-        main: ("main.c", C_MAIN),
-        command: &["clang", "-std=c11"],
-    },
-    Harness {
-        name: "gcc_cpp11",
-        language: "cpp",
-        file: "lit.h",
-        main: ("main.cpp", CPP_MAIN),
-        command: &["g++", "-std=c++11"],
-    },
-    Harness {
-        name: "clang_cpp17",
-        language: "cpp",
-        file: "lit.h",
-        main: ("main.cpp", CPP_MAIN),
-        command: &["clang++", "-std=c++17"],
-    },
+    c_harness("gcc_c99", &["gcc", "-std=c99"]),
+    c_harness("clang_c11", &["clang", "-std=c11"]),
+    cpp_harness("gcc_cpp11", &["g++", "-std=c++11"]),
+    cpp_harness("clang_cpp17", &["clang++", "-std=c++17"]),
     Harness {
         name: "rust",
         language: "rust",
         file: "lit.rs",
         main: ("main.rs", RUST_MAIN),
-        command: &["rustc", "--edition", "2024", "-Dwarnings", "-Cdebuginfo=0"],
+        command: &RUSTC,
     },
 ];
+
+const fn c_harness(name: &'static str, command: &'static [&'static str]) -> Harness {
+    Harness { name, language: "c", file: "lit.h", main: ("main.c", C_MAIN), command }
+}
+
+const fn cpp_harness(name: &'static str, command: &'static [&'static str]) -> Harness {
+    Harness { name, language: "cpp", file: "lit.h", main: ("main.cpp", CPP_MAIN), command }
+}
 
 pub fn tests() -> Vec<Trial> {
     let mut tests: Vec<Trial> = HARNESSES
@@ -104,8 +91,17 @@ pub fn tests() -> Vec<Trial> {
         let name = format!("bindings::other_layouts_do_not_compile::{}", harness.name);
         Trial::test(name, || refuses(harness))
     }));
+    tests.extend(HARNESSES.iter().map(|harness| {
+        let name = format!("bindings::hard_names_compile::{}", harness.name);
+        Trial::test(name, || compiles_hard_names(harness))
+    }));
     tests.push(Trial::test("bindings::typescript", typescript));
-    tests.push(Trial::test("bindings::unknown_programs_are_named", unknown));
+    tests.push(
+        Trial::test("bindings::typescript_compiles", typescript_compiles)
+            .with_ignored_flag(!root().join(TSC).exists()),
+    );
+    tests.push(Trial::test("bindings::unknown_names_are_errors", unknown));
+    tests.push(Trial::test("bindings::members_out_of_range", members_out_of_range));
     tests
 }
 
@@ -165,7 +161,13 @@ fn refuses(harness: &Harness) -> Outcome {
     Ok(())
 }
 
-/// `tsc` of the site, where it is installed, takes the types; where it is not, this says so.
+/// The compiler that the site installs. Without it, its test is ignored.
+const TSC: &str = "site/node_modules/.bin/tsc";
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
 fn typescript() -> Outcome {
     let text = written("ts")?;
     for part in
@@ -175,14 +177,11 @@ fn typescript() -> Outcome {
             return Err(format!("there is no `{part}` in {text}").into());
         }
     }
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let compiler = root.join("site/node_modules/.bin/tsc");
-    if !compiler.exists() {
-        println!(
-            "bindings::typescript: no compiler in site/node_modules, the types are not checked"
-        );
-        return Ok(());
-    }
+    Ok(())
+}
+
+fn typescript_compiles() -> Outcome {
+    let (text, root) = (written("ts")?, root());
     let folder = tempfile::tempdir()?;
     let place = folder.path().join("node_modules/@lamplight");
     std::fs::create_dir_all(&place)?;
@@ -192,7 +191,7 @@ fn typescript() -> Outcome {
 export const bytes: ArrayBuffer = litCameraBytes({ normal: [1, 2, 3, 4, 5, 6, 7, 8, 9] });\n";
     std::fs::write(folder.path().join("lit.ts"), &text)?;
     std::fs::write(folder.path().join("main.ts"), main)?;
-    let mut command = Command::new(compiler);
+    let mut command = Command::new(root.join(TSC));
     command.current_dir(folder.path()).args(["--strict", "--noEmit", "--target", "es2022"]);
     command.args(["--module", "nodenext", "--moduleResolution", "nodenext", "main.ts"]);
     let output = command.output()?;
@@ -203,11 +202,77 @@ export const bytes: ArrayBuffer = litCameraBytes({ normal: [1, 2, 3, 4, 5, 6, 7,
 }
 
 fn unknown() -> Outcome {
+    let cases = [
+        ("lot", None, "no program `lot`; it has: blank, lit, write"),
+        ("write", Some(Language::Glsl), "no source language `glsl`; it has: wesl"),
+    ];
     let language = bindings::find("c").ok_or("no such language")?;
-    let programs = ["lot".to_owned()];
-    let request = Request { programs: &programs, ..Request::default() };
-    match bindings::write(&bundle()?, &request, language) {
-        Err(error) if error.to_string().contains("it has: blank, lit, write") => Ok(()),
-        other => Err(format!("{other:?}").into()),
+    for (program, source, part) in cases {
+        let programs = [program.to_owned()];
+        let request = Request { programs: &programs, source, ..Request::default() };
+        match bindings::write(&bundle()?, &request, language) {
+            Err(error) if error.to_string().contains(part) => {}
+            other => return Err(format!("{program}: {other:?}").into()),
+        }
     }
+    Ok(())
+}
+
+/// Members at the end of what 32 bits can say give a text in every language.
+fn members_out_of_range() -> Outcome {
+    let changed = changed_bundle(|binding| {
+        binding.members.iter_mut().for_each(|member| member.offset = u32::MAX - 3);
+    })?;
+    for language in bindings::LANGUAGES {
+        let text = bindings::write(&changed, &Request::default(), language)?;
+        if !text.contains("clip_from_world") {
+            return Err(format!("{}: {text}", language.name).into());
+        }
+    }
+    Ok(())
+}
+
+/// Names of shaders that mean something else in the language of an engine, or have another style.
+fn compiles_hard_names(harness: &Harness) -> Outcome {
+    let changed = changed_bundle(|binding| {
+        for member in &mut binding.members {
+            let name = match member.name.as_str() {
+                "clip_from_world" => "clipFromWorld",
+                "normal" => "compl",
+                _ => "fn",
+            };
+            member.name = name.to_owned();
+        }
+        binding.name = if binding.name == "camera" { "not_eq" } else { "loop" }.to_owned();
+    })?;
+    let language = bindings::find(harness.language).ok_or("no such language")?;
+    let text = bindings::write(&changed, &Request::default(), language)?;
+    let main = match harness.language {
+        "rust" => "mod made { include!(\"lit.rs\"); }\nfn main() {}\n",
+        _ => "#include \"lit.h\"\nint main(void) { return 0; }\n",
+    };
+    compiled(&Harness { main: (harness.main.0, main), ..*harness }, &text).map(drop)
+}
+
+/// The bundle with other bindings, and its program `lit` by the name `new`.
+fn changed_bundle(change: impl Fn(&mut Binding)) -> Result<Bundle, Failed> {
+    let mut contents = bundle()?.contents()?;
+    let lit = contents.programs.remove("lit").ok_or("no program `lit`")?;
+    contents.programs.insert("new".to_owned(), lit);
+    for entries in contents.programs.values_mut().flat_map(|found| found.languages.values_mut()) {
+        for entry in entries.values_mut() {
+            let mut changed = EntryContents::default();
+            for (key, hash) in &entry.keys {
+                let mut unit = entry.units.get(hash).ok_or("no unit")?.clone();
+                Arc::make_mut(&mut unit.reflection).bindings.iter_mut().for_each(&change);
+                let hash = changed.add(unit)?;
+                changed.keys.insert(key.clone(), hash);
+            }
+            *entry = changed;
+        }
+    }
+    let folder = tempfile::tempdir()?;
+    lamplight_bundle::write_directory(&contents, folder.path())?;
+    // Everything but the shaders is read at once.
+    Ok(Bundle::open(folder.path())?)
 }

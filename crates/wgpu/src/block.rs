@@ -19,7 +19,7 @@ pub enum BlockError {
     /// The array of this path has fewer elements.
     NoElement(String),
     /// The member of this path takes another number of numbers.
-    Count(String, usize),
+    Count(String, u64),
     /// The member of this path has another type.
     Type(String, String),
 }
@@ -86,10 +86,11 @@ impl<'a> Block<'a> {
         if shape.scalar.as_deref() != Some(T::SCALAR) {
             return Err(wrong_type());
         }
-        let places = number_places(shape, member.stride.unwrap_or(0) as usize);
-        if places.len() != numbers.len() {
-            return Err(BlockError::Count(path.to_owned(), places.len()));
+        let count = number_count(shape);
+        if count != numbers.len() as u64 {
+            return Err(BlockError::Count(path.to_owned(), count));
         }
+        let places = number_places(shape, member.stride.unwrap_or(0) as usize);
         for (place, number) in places.into_iter().zip(numbers) {
             // A bundle may say that a member is outside of its buffer.
             let to = self.bytes.get_mut(at + place..at + place + 4).ok_or_else(wrong_type)?;
@@ -131,6 +132,12 @@ impl<'a> Block<'a> {
         }
         Err(BlockError::NoMember(path.to_owned(), Vec::new()))
     }
+}
+
+/// How many numbers a member has.
+fn number_count(shape: &Shape) -> u64 {
+    let counts = [shape.count, shape.columns, shape.rows];
+    counts.iter().fold(1, |all, count| all.saturating_mul(count.unwrap_or(1).into()))
 }
 
 /// Where each number of a member is, from its start.
@@ -200,6 +207,23 @@ mod tests {
         let normal = [1.0, 2.0, 3.0, 0.0, 4.0, 5.0, 6.0, 0.0, 7.0, 8.0, 9.0, 0.0];
         assert_eq!(found[..12], normal);
         assert_eq!(found[12..], [0.0, 0.0, 0.0, 0.0, 10.0, 11.0, 12.0, 0.0]);
+    }
+
+    /// A bundle may say of a member what no buffer can have.
+    #[test]
+    fn members_beyond_the_buffer_are_errors() {
+        let mut binding = binding();
+        let most = Some(u32::MAX);
+        binding.members = vec![
+            member("huge", 0, floats(most, most, most)),
+            member("far", u32::MAX, floats(None, None, None)),
+        ];
+        let mut block = Block::new(&binding);
+        assert_eq!(
+            block.set("huge", &[1.0_f32]).unwrap_err(),
+            BlockError::Count("huge".to_owned(), u64::MAX)
+        );
+        assert!(matches!(block.set("far", &[1.0_f32]), Err(BlockError::Type(..))));
     }
 
     #[test]

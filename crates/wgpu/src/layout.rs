@@ -14,6 +14,8 @@ pub enum LayoutError {
     Conflict(u32, u32),
     /// A binding has something that wgpu has not: its name, and what that is.
     Unknown(String, String),
+    /// A binding is in a group of a number that no device has: its name, and the number.
+    Group(String, u32),
 }
 
 impl fmt::Display for LayoutError {
@@ -23,6 +25,9 @@ impl fmt::Display for LayoutError {
                 write!(f, "permutations bind different things in group {group} binding {binding}")
             }
             Self::Unknown(name, what) => write!(f, "wgpu has no `{what}`, which `{name}` needs"),
+            Self::Group(name, group) => {
+                write!(f, "no device has a group {group}, which `{name}` is in")
+            }
         }
     }
 }
@@ -59,19 +64,27 @@ pub fn pipeline_layout(
     Ok(PipelineLayout { layout, groups })
 }
 
+/// More groups than any device of wgpu has, so that no bundle asks for much memory.
+const MOST_GROUPS: u32 = 64;
+
 /// The entries of each group, by the number of the group.
 ///
 /// # Errors
 /// [`LayoutError::Conflict`] where two permutations bind different kinds of things in one place;
-/// [`LayoutError::Unknown`] for a format or a dimension that wgpu does not have.
+/// [`LayoutError::Unknown`] for a format or a dimension that wgpu does not have;
+/// [`LayoutError::Group`] for a group that no device has.
 pub fn layout_entries(
     layout: &[LayoutBinding],
 ) -> Result<Vec<Vec<wgpu::BindGroupLayoutEntry>>, LayoutError> {
-    let count = layout.iter().map(|found| found.binding.group + 1).max().unwrap_or(0);
-    let mut groups: Vec<Vec<wgpu::BindGroupLayoutEntry>> = vec![Vec::new(); count as usize];
+    let mut groups: Vec<Vec<wgpu::BindGroupLayoutEntry>> = Vec::new();
     for found in layout {
         let binding = &found.binding;
-        let entries = &mut groups[binding.group as usize];
+        if binding.group >= MOST_GROUPS {
+            return Err(LayoutError::Group(binding.name.clone(), binding.group));
+        }
+        let group = binding.group as usize;
+        groups.resize(groups.len().max(group + 1), Vec::new());
+        let entries = &mut groups[group];
         if entries.iter().any(|known| known.binding == binding.binding) {
             return Err(LayoutError::Conflict(binding.group, binding.binding));
         }
@@ -242,5 +255,9 @@ mod tests {
         assert_eq!(error.to_string(), "wgpu has no `rgba9`, which `picture` needs");
         let twice = [entry(BindingKind::Sampler, None), entry(BindingKind::Uniform, None)];
         assert_eq!(layout_entries(&twice).unwrap_err(), LayoutError::Conflict(1, 3));
+        let mut far = entry(BindingKind::Sampler, None);
+        far.binding.group = u32::MAX;
+        let error = layout_entries(&[far]).unwrap_err();
+        assert_eq!(error.to_string(), "no device has a group 4294967295, which `picture` is in");
     }
 }

@@ -27,7 +27,7 @@ function writeVector(view, at, scalar, components, values, from) {
 function writeNumbers(view, at, path, member, values) {
   const { scalar, rows = 1, columns = 1, matrix_stride = 0, count = 1 } = member.shape;
   const list = typeof values === "number" ? [values] : values;
-  const needed = rows * columns * Math.max(count, 1);
+  const needed = rows * columns * count;
   if (!(list?.length === needed)) {
     throw new TypeError(`\`${path}\` needs ${needed} numbers, not ${list?.length ?? "none"}`);
   }

@@ -125,7 +125,7 @@ export interface ConstantChoice extends Constant {
 
 /** Why a bundle, or a part of it, cannot be used. */
 export class BundleError extends Error {
-  readonly code: "corrupt" | "newer" | "not_found" | "bad_key" | "miss" | "read";
+  readonly code: "corrupt" | "format" | "not_found" | "bad_key" | "miss" | "read";
   /** The nearest key that there is, of a miss. */
   readonly nearest?: string;
 }

@@ -28,7 +28,7 @@ export class BundleError extends Error {
   constructor(code, message, nearest) {
     super(message);
     this.name = "BundleError";
-    /** `corrupt`, `newer`, `not_found`, `bad_key`, `miss` or `read`. */
+    /** `corrupt`, `format`, `not_found`, `bad_key`, `miss` or `read`. */
     this.code = code;
     /** The nearest key that there is, of a miss. */
     this.nearest = nearest;
@@ -58,7 +58,7 @@ function readHeader(bytes, size) {
   const version = view.getUint32(8, true);
   if (version !== VERSION) {
     const reads = `this reader reads version ${VERSION}`;
-    throw new BundleError("newer", `the bundle has format version ${version}, ${reads}`);
+    throw new BundleError("format", `the bundle has format version ${version}, ${reads}`);
   }
   if (bytes.length < HEADER) damaged("it is cut off");
   if (!matches(bytes.subarray(0, HEADER - 16), bytes.subarray(HEADER - 16, HEADER))) {
@@ -119,7 +119,11 @@ export class Bundle {
   }
 
   program(name) {
-    return this.meta.programs[name] ?? notFound("program", name, this.programs);
+    const found = this.meta.programs[name] ?? notFound("program", name, this.programs);
+    const isWhole = [found.axes, found.entries].every(Array.isArray) &&
+      found.axes.every((axis) => Array.isArray(axis?.values)) &&
+      found.entries.every((entry) => entry?.keys);
+    return isWhole ? found : damaged("a program has no axes, no entry points or no keys");
   }
 
   /** What all permutations of a program in one language bind together. */
@@ -149,7 +153,7 @@ export class Bundle {
     return Array.from({ length: set.count }, (_, index) => this.keyAt(set, index));
   }
 
-  /** The index of a canonical key, by halves; -1 where it is not there. */
+  /** The index of a canonical key, by binary search; -1 where it is not there. */
   search(set, key) {
     let [low, high] = [0, set.count];
     while (low < high) {

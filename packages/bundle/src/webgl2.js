@@ -65,7 +65,7 @@ function numberUnits(gl, program, shader, units) {
 export async function linkProgram(gl, vertex, fragment) {
   const stages = await Promise.all([vertex, fragment].map((shader) => compile(gl, shader)));
   const program = link(gl, stages);
-  const blocks = {}, units = [];
+  const blocks = Object.create(null), units = [];
   gl.useProgram(program);
   for (const shader of [vertex, fragment]) {
     numberBlocks(gl, program, shader, blocks);

@@ -18,5 +18,8 @@ export function stage(
   device: GPUDevice, shader: Shader,
 ): Promise<{ module: GPUShaderModule; entryPoint: string; constants: Record<string, number> }>;
 
-/** One vertex buffer with all attributes of a vertex stage, one after the other without padding. */
+/**
+ * One vertex buffer with all attributes of a vertex stage, one after the other without padding.
+ * Built-in inputs, and inputs of types other than `f32`, `i32` and `u32`, are left out.
+ */
 export function vertexBuffer(shader: Shader): GPUVertexBufferLayout;

@@ -6,6 +6,9 @@ export { packBlock };
 
 const STAGES = { vertex: 1, fragment: 2, compute: 4 };
 
+/** More groups than any device has. */
+const MOST_GROUPS = 64;
+
 const dashed = (name) => name.replaceAll("_", "-");
 
 /** What a layout says of a binding, but for its number and its stages. */
@@ -40,6 +43,9 @@ function resourceOf({ kind, size, writable, texture }) {
 export function layoutEntries(layout) {
   const groups = [];
   for (const binding of layout) {
+    if (!(binding.group < MOST_GROUPS)) {
+      throw new TypeError(`no device has a group ${binding.group}, which \`${binding.name}\` is in`);
+    }
     const entries = (groups[binding.group] ??= []);
     if (entries.some((known) => known.binding === binding.binding)) {
       const place = `group ${binding.group} binding ${binding.binding}`;
@@ -75,11 +81,14 @@ const FORMATS = { f32: "float32", i32: "sint32", u32: "uint32" };
 
 /**
  * One vertex buffer with all attributes of a vertex stage, one after the other without padding:
- * `arrayStride` and `attributes`.
+ * `arrayStride` and `attributes`. Built-in inputs, and inputs of types other than `f32`, `i32` and
+ * `u32`, are left out.
  */
 export function vertexBuffer(shader) {
   let arrayStride = 0;
-  const located = shader.reflection.inputs.filter(({ location }) => location !== undefined);
+  const located = shader.reflection.inputs.filter(
+    ({ location, shape }) => location !== undefined && shape && Object.hasOwn(FORMATS, shape.scalar),
+  );
   const attributes = located.map(({ location, shape: { scalar, rows = 1 } }) => {
     const attribute = {
       shaderLocation: location,

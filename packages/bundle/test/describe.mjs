@@ -19,6 +19,8 @@ throws(() => packBlock(camera, { normal: [1, 2] }), /`camera.normal` needs 9 num
 throws(() => packBlock(camera, { norml: [1] }), /no member `norml`; it has: clip_from_world, normal/);
 
 const [lamps] = bundle.find("lit", "fs_main", "fog", "wgsl").reflection.bindings;
+const rest = { name: "rest", offset: 0, stride: 4, shape: { scalar: "u32", count: 0 } };
+throws(() => packBlock({ name: "b", size: 16, members: [rest] }, { rest: [1] }), /needs 0 numbers/);
 const packed = packBlock(lamps, { all: [{}, { color: [1, 2, 3], kind: 7 }] });
 same([...new Float32Array(packed, 16, 3), new Uint32Array(packed)[7]], [1, 2, 3, 7]);
 throws(() => packBlock(lamps, { all: Array(6).fill({}) }), /`lamps.all` has 5 elements/);
@@ -43,6 +45,8 @@ same(layoutEntries(bundle.layout("lit")), [
     { binding: 3, visibility: 2, sampler: { type: "comparison" } },
   ],
 ]);
+const far = { ...bundle.layout("lit")[0], group: 0xffff_ffff };
+throws(() => layoutEntries([far]), /no device has a group 4294967295, which `camera` is in/);
 same(layoutEntries(bundle.layout("write"))[0][0], {
   binding: 0,
   visibility: 4,
@@ -55,7 +59,9 @@ same(await stage(device, bundle.find("lit", "fs_main", "shadow=hard,taps=-4", "w
   entryPoint: "entry",
   constants: { 7: -4 },
 });
-same(vertexBuffer(vertex), {
+const half = { location: 1, type: "vec2<f16>", shape: { scalar: "f16", rows: 2 } };
+const inputs = [{ builtin: "vertex_index", type: "u32" }, half, ...vertex.reflection.inputs];
+same(vertexBuffer({ reflection: { inputs } }), {
   arrayStride: 12,
   attributes: [{ shaderLocation: 0, offset: 0, format: "float32x3" }],
 });

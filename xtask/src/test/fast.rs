@@ -1,4 +1,4 @@
-//! `cargo xtask test fast`: the tests that need nothing outside the repository, those of changed
+//! `cargo xtask test fast`: the tests that need little outside the repository, those of changed
 //! packages first.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,8 +9,9 @@ use std::time::Instant;
 use serde_json::Value;
 
 use super::binaries::{self, TestBinary};
+use super::needs;
 use xtask::process::{self, root};
-use xtask::{CommandFailure, CommandResult};
+use xtask::{CommandFailure, CommandResult, machine};
 
 /// Packages of the workspace in an order in which each comes after those that it depends on, with
 /// these.
@@ -29,14 +30,16 @@ pub fn run(arguments: &[String]) -> CommandResult {
     let light: Vec<&TestBinary> = binaries.iter().filter(|binary| is_light(binary)).collect();
     let started = Instant::now();
     let mut failed = Vec::new();
-    for name in in_order(&workspace, &changed, arguments.is_empty()) {
-        for binary in light.iter().filter(|binary| binary.package == name) {
-            let TestBinary { package, target, groups: _ } = binary;
-            println!("{package} ({target}), after {:.1?}", started.elapsed());
-            let test = ["test", "--quiet", "--package", package, "--test", target];
-            if process::cargo(&test, &["--quiet".to_owned()]).is_err() {
-                failed.push(package.clone());
-            }
+    let order = in_order(&workspace, &changed, arguments.is_empty());
+    let pairs = order.iter().flat_map(|name| light.iter().map(move |binary| (name, *binary)));
+    let chosen = pairs.filter(|(name, binary)| binary.package == **name);
+    let chosen: Vec<&TestBinary> = chosen.map(|(_, binary)| binary).collect();
+    machine::prepare(&Some(needs::of_packages(chosen.iter().copied()).collect()))?;
+    for TestBinary { package, target, groups: _ } in chosen {
+        println!("{package} ({target}), after {:.1?}", started.elapsed());
+        let test = ["test", "--quiet", "--package", package, "--test", target];
+        if process::cargo(&test, &["--quiet".to_owned()]).is_err() {
+            failed.push(package.clone());
         }
     }
     println!("{:.1?}", started.elapsed());
@@ -46,7 +49,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
     }
 }
 
-/// Whether tests need nothing outside the repository.
+/// Whether tests need no more outside the repository than [`needs::of_packages`] lists.
 fn is_light(binary: &TestBinary) -> bool {
     (binary.package.as_str(), binary.target) != ("lamplight", "all")
 }
@@ -55,6 +58,8 @@ fn is_light(binary: &TestBinary) -> bool {
 /// before the whole.
 pub fn test_packages() -> CommandResult {
     let binaries = binaries::find_binaries()?;
+    let light = binaries.iter().filter(|binary| is_light(binary));
+    machine::prepare(&Some(needs::of_packages(light).collect()))?;
     let (of_root, of_packages): (Vec<&TestBinary>, Vec<&TestBinary>) = binaries
         .iter()
         .filter(|binary| is_light(binary))

@@ -32,8 +32,24 @@ const OF_GROUPS: &[(&str, &[&str])] = &[
     ("traps", &[]),
 ];
 
-/// The packages that the groups of some binaries need; `None` if that is every one. Packages below
-/// `crates/` need none for their own tests.
+/// Packages below `crates/` whose own tests need more than the repository: their readers and bindings
+/// are compiled and run.
+const OF_PACKAGES: &[(&str, &[&str])] = &[
+    ("lamplight-bundle", &["gcc", "g++", "clang", "nodejs"]),
+    ("lamplight-keys", &["gcc", "g++", "clang"]),
+];
+
+/// What the packages of some binaries need for their own tests.
+pub fn of_packages<'a>(
+    binaries: impl IntoIterator<Item = &'a TestBinary>,
+) -> impl Iterator<Item = &'static str> {
+    let packages = binaries.into_iter().filter_map(|binary| {
+        OF_PACKAGES.iter().find(|(name, _)| *name == binary.package).map(|(_, needed)| *needed)
+    });
+    packages.flatten().copied()
+}
+
+/// The packages that the groups of some binaries need; `None` if that is every one.
 pub fn of_groups(binaries: &[TestBinary]) -> Option<Vec<&'static str>> {
     let mut needed = Vec::new();
     for binary in binaries.iter().filter(|binary| binary.package == "lamplight") {
@@ -42,5 +58,6 @@ pub fn of_groups(binaries: &[TestBinary]) -> Option<Vec<&'static str>> {
             needed.extend_from_slice(packages);
         }
     }
+    needed.extend(of_packages(binaries));
     Some(needed)
 }

@@ -21,7 +21,7 @@
 //! | 5 | a record | the word where it starts: the number of its members; then for each the number of its name and its value, sorted by the bytes of the names |
 //! | 6 | a whole number that needs more bits | number of the text with its digits |
 //!
-//! A list or a record is written after everything in it, so that no chain of them has a circle.
+//! A list or a record is written after everything in it, so that there are no cycles.
 //! Equal ones are written once.
 
 mod read;

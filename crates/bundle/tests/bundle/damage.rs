@@ -1,6 +1,8 @@
 //! Bundles that are damaged, cut short, or of another version. Loading one must not panic, and
 //! verifying it must notice.
 
+use std::path::Path;
+
 use lamplight_bundle::{Bundle, Error, Target, pack, write_directory};
 
 use super::{Outcome, check, small};
@@ -71,6 +73,7 @@ pub fn damaged_directories() -> Outcome {
     std::fs::write(folder.path().join("manifest.json"), &manifest)?;
     let bundle = Bundle::open(folder.path())?;
     bundle.verify()?;
+    damaged_indices(folder.path(), &bundle)?;
     let blob = std::fs::read_dir(folder.path().join("blobs"))?.next().ok_or("no blob")??.path();
     let good = std::fs::read(&blob)?;
     let mut bad = good.clone();
@@ -79,6 +82,25 @@ pub fn damaged_directories() -> Outcome {
     check(matches!(bundle.verify(), Err(Error::Corrupt { .. })), "a damaged blob was not noticed")?;
     std::fs::remove_file(&blob)?;
     check(bundle.verify().is_err(), "a missing blob was not noticed")
+}
+
+/// A flipped bit in any byte of the index, and an index that is cut off or not there.
+fn damaged_indices(folder: &Path, bundle: &Bundle) -> Outcome {
+    let place = folder.join("index.bin");
+    let index = std::fs::read(&place)?;
+    let mut state = 0x0fed_cba9_8765_4321;
+    for at in (0..index.len()).step_by(61) {
+        let mut damaged = index.clone();
+        damaged[at] ^= 1 << random(&mut state, 8);
+        std::fs::write(&place, &damaged)?;
+        check(bundle.verify().is_err(), &format!("a flipped bit in byte {at} of the index"))?;
+    }
+    std::fs::write(&place, &index[..index.len() - 1])?;
+    check(bundle.verify().is_err(), "an index that was cut off was not noticed")?;
+    std::fs::remove_file(&place)?;
+    check(bundle.verify().is_err(), "a missing index was not noticed")?;
+    std::fs::write(&place, &index)?;
+    Ok(bundle.verify()?)
 }
 
 pub fn versions() -> Outcome {

@@ -75,7 +75,7 @@ fn compiles(program: &str, language: &str) -> Outcome {
 }
 
 /// A program of the folder, built with sanitizers that end it at the first fault.
-fn build(name: &str, folder: &Path) -> Result<PathBuf, Failed> {
+pub fn build(name: &str, folder: &Path) -> Result<PathBuf, Failed> {
     let place = folder.join(name);
     let mut command = compiler(
         "gcc",

@@ -20,12 +20,14 @@ pub fn copies(good: &[u8]) -> Result<Vec<(String, Vec<u8>)>, Failed> {
         let (offset, length) = section(good, index)?;
         copies.push((format!("flipped_{name}"), flipped(good, offset + length / 2)));
     }
-    let mut newer = good.to_vec();
-    newer[8] = 3;
-    copies.push(("newer".to_owned(), newer));
+    for (name, version) in [("older", 1), ("newer", 3)] {
+        let mut other = good.to_vec();
+        other[8] = version;
+        copies.push((name.to_owned(), other));
+    }
     copies.push(("foreign".to_owned(), b"\x89PNG\r\n\x1a\n and more of a picture".to_vec()));
     copies.push(("longer".to_owned(), [good, b"more"].concat()));
-    copies.push(("crafted_circle".to_owned(), with_circle(good)?));
+    copies.push(("crafted_cycle".to_owned(), with_cycle(good)?));
     copies.push(("crafted_unit".to_owned(), with_units(good)?));
     copies.push(("crafted_group".to_owned(), with_groups(good)?));
     Ok(copies)
@@ -61,7 +63,7 @@ fn sealed(mut bytes: Vec<u8>) -> Result<Vec<u8>, Failed> {
 }
 
 /// Each root of META and VALUES is a list that is in itself.
-fn with_circle(good: &[u8]) -> Result<Vec<u8>, Failed> {
+fn with_cycle(good: &[u8]) -> Result<Vec<u8>, Failed> {
     let mut bytes = good.to_vec();
     for index in [0, 3] {
         let (offset, _) = section(good, index)?;

@@ -54,7 +54,6 @@ static size_t place(const uint8_t *bytes, int section, size_t *size) {
 static void change(uint8_t *bytes) {
     int changes = 1 + (int)random_below(4), section = (int)random_below(6);
     size_t size, at = place(bytes, section, &size);
-    if (section == 5) section = 3;
     for (; changes; changes--) {
         uint8_t *word;
         if (size < 4) return;
@@ -67,7 +66,7 @@ static void change(uint8_t *bytes) {
 static void seal_all(uint8_t *bytes) {
     size_t size, at, blobs, data, i;
     int section;
-    uint32_t groups = 1; /* the small bundle has few; each that is whole gets its checksum */
+    uint32_t groups = 1; /* as many as the small bundle has */
     data = place(bytes, 5, &size);
     blobs = place(bytes, 4, &at) + at - 32 * groups;
     for (i = 0; i < groups; i++) {

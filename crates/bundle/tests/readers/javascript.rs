@@ -24,7 +24,7 @@ pub fn tests() -> Vec<Trial> {
     tests
 }
 
-fn package() -> PathBuf {
+pub fn package() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../packages/bundle")
 }
 

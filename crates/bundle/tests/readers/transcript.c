@@ -43,7 +43,7 @@ static size_t read_blob(void *user, const char *name, void *out, size_t size) {
 static const char *word_of(int code) {
     switch (code) {
     case LAMPLIGHT_CORRUPT: return "corrupt";
-    case LAMPLIGHT_NEWER: return "newer";
+    case LAMPLIGHT_FORMAT: return "format";
     case LAMPLIGHT_NOT_FOUND: return "not_found";
     case LAMPLIGHT_BAD_KEY: return "bad_key";
     case LAMPLIGHT_MISS: return "miss";

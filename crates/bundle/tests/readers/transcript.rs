@@ -63,7 +63,7 @@ fn first_failure(bytes: &[u8]) -> Option<&'static str> {
 fn code(error: &Error) -> &'static str {
     match error {
         Error::Corrupt { .. } => "corrupt",
-        Error::Version { .. } => "newer",
+        Error::Version { .. } => "format",
         Error::NotFound { .. } => "not_found",
         Error::BadKey { .. } => "bad_key",
         Error::Miss(_) => "miss",

@@ -25,12 +25,15 @@ struct Dialect {
     is_cpp: bool,
 }
 
+const C_DIALECT: Dialect = Dialect { name: "c", is_cpp: false };
+const CPP_DIALECT: Dialect = Dialect { name: "cpp", is_cpp: true };
+
 fn write_c(request: &Request<'_>, programs: &[ProgramModel]) -> String {
-    write_header(request, programs, &Dialect { name: "c", is_cpp: false })
+    write_header(request, programs, &C_DIALECT)
 }
 
 fn write_cpp(request: &Request<'_>, programs: &[ProgramModel]) -> String {
-    write_header(request, programs, &Dialect { name: "cpp", is_cpp: true })
+    write_header(request, programs, &CPP_DIALECT)
 }
 
 fn write_header(request: &Request<'_>, programs: &[ProgramModel], dialect: &Dialect) -> String {
@@ -39,7 +42,13 @@ fn write_header(request: &Request<'_>, programs: &[ProgramModel], dialect: &Dial
     let guard = format!("LAMPLIGHT_BINDINGS_{}_H", hash[..16].to_uppercase());
     let mut text = START.replace("LANG", dialect.name).replace("GUARD", &guard);
     let mut taken = Taken::new(KEYWORDS);
-    programs.iter().for_each(|program| text.push_str(&program_text(program, dialect, &mut taken)));
+    let program_texts = programs.iter().map(|program| match dialect.is_cpp {
+        true => namespace_text(program, &taken.give(identifier(&program.name))),
+        false => {
+            program_text(program, &format!("{}_", identifier(&program.name)), dialect, &mut taken)
+        }
+    });
+    program_texts.for_each(|program| text.push_str(&program));
     if let Some((name, bytes)) = request.embedded {
         let name = taken.give(identifier(name));
         let _ = write!(
@@ -52,23 +61,24 @@ fn write_header(request: &Request<'_>, programs: &[ProgramModel], dialect: &Dial
     text + "\n#endif\n"
 }
 
-fn program_text(program: &ProgramModel, dialect: &Dialect, taken: &mut Taken) -> String {
-    let prefix = if dialect.is_cpp { String::new() } else { identifier(&program.name) + "_" };
-    // Each program of C++ has a namespace of its own.
-    let mut own = Taken::new(KEYWORDS);
-    let taken = if dialect.is_cpp { &mut own } else { taken };
+/// Each program of C++ has a namespace, so that its names clash with no others.
+fn namespace_text(program: &ProgramModel, name: &str) -> String {
+    let text = program_text(program, "", &CPP_DIALECT, &mut Taken::new(KEYWORDS));
+    format!("\nnamespace {name} {{{text}}} /* namespace {name} */\n")
+}
+
+fn program_text(
+    program: &ProgramModel,
+    prefix: &str,
+    dialect: &Dialect,
+    taken: &mut Taken,
+) -> String {
     let mut text = format!("\n/* Program `{}`. */\n", identifier(&program.name));
-    if dialect.is_cpp {
-        let _ = writeln!(text, "namespace {} {{", identifier(&program.name));
-    }
     text.push_str(&numbers_text(program, &prefix.to_uppercase(), taken));
     let named = |found: &StructModel| taken.give(format!("{prefix}{}", identifier(&found.name)));
     let names: Vec<String> = program.structs.iter().map(named).collect();
     for (found, name) in program.structs.iter().zip(&names) {
         text.push_str(&struct_text(found, name, &names, dialect));
-    }
-    if dialect.is_cpp {
-        let _ = writeln!(text, "}} /* namespace {} */", identifier(&program.name));
     }
     text
 }

@@ -50,7 +50,8 @@ pub fn is_written(head: &[u8]) -> bool {
 /// One source file. The same bundle gives the same bytes.
 ///
 /// # Errors
-/// [`Error::NotFound`] for a program that the bundle does not have; others where it is damaged.
+/// [`Error::NotFound`] for a program that the bundle does not have, and for a source language that a
+/// program does not have; others where the bundle is damaged.
 pub fn write(
     bundle: &Bundle,
     request: &Request<'_>,

@@ -52,6 +52,11 @@ impl ProgramModel {
         let languages: BTreeSet<Language> = program.entries().map(|(found, _)| found).collect();
         let wesl = languages.contains(&Language::Wesl).then_some(Language::Wesl);
         let language = source.or(wesl).unwrap_or(Language::Glsl);
+        if source.is_some() && !languages.contains(&language) {
+            let known = languages.iter().map(|known| known.name().to_owned()).collect();
+            let name = language.name().to_owned();
+            return Err(Error::NotFound { what: "source language", name, known });
+        }
         let mut model = Self {
             name: name.to_owned(),
             bindings: program.layout(language).to_vec(),
@@ -97,7 +102,7 @@ impl ProgramModel {
         for member in members {
             let Some(kind) = self.kind_of(member) else { continue };
             pad_fields(&mut fields, end, member.offset);
-            end = member.offset + member.size;
+            end = member.offset.saturating_add(member.size);
             let (offset, size) = (member.offset, member.size);
             fields.push(FieldModel { name: member.name.clone(), offset, size, kind });
         }

@@ -10,6 +10,11 @@ use crate::rust::KEYWORDS;
 
 pub const LANGUAGE: BindingLanguage = BindingLanguage { name: "rust", write };
 
+/// The generated code has these: an engine uses only some of the items, names are those of the shaders,
+/// and formatting its sources must not make the file differ from what `--check` compares it with.
+const ATTRIBUTES: &str = "#[allow(dead_code, non_snake_case, non_camel_case_types, clippy::all)]\n\
+                          #[rustfmt::skip]";
+
 fn write(request: &Request<'_>, programs: &[ProgramModel]) -> String {
     let mut taken = Taken::new(KEYWORDS);
     let mut text = String::from("// Written by `lamplight bindings --lang rust`; do not edit.\n");
@@ -21,16 +26,15 @@ fn write(request: &Request<'_>, programs: &[ProgramModel]) -> String {
         let (length, lines) = (bytes.len(), byte_lines(bytes));
         let _ = write!(
             text,
-            "\n/// The bundle, as one file.\n#[allow(dead_code)]\n#[rustfmt::skip]\npub static {name}: [u8; {length}] = [\n{lines}];\n"
+            "\n/// The bundle, as one file.\n{ATTRIBUTES}\npub static {name}: [u8; {length}] = [\n{lines}];\n"
         );
     }
     text
 }
 
 fn program_module(program: &ProgramModel, name: &str) -> String {
-    let mut text = format!(
-        "\n/// Bindings of program `{name}`.\n#[allow(dead_code)]\n#[rustfmt::skip]\npub mod {name} {{\n"
-    );
+    let mut text =
+        format!("\n/// Bindings of program `{name}`.\n{ATTRIBUTES}\npub mod {name} {{\n");
     let mut taken = Taken::new(KEYWORDS);
     for found in &program.bindings {
         let binding = &found.binding;
