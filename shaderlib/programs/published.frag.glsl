@@ -137,6 +137,12 @@ vec3 projected(vec4 in_light) {
     return vec3(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y, ndc.z);
 }
 
+/// What OpenGL compares with the depths of the books' maps, whose numbers are fixed-point: so nothing
+/// beyond the far plane is in shadow where the map is empty.
+float fixed_point(float depth) {
+    return clamp(depth, 0.0, 1.0);
+}
+
 /// The share of a filtered texel that is on the map and not on its border.
 float share_on_map(vec2 uv, vec2 size) {
     vec2 inside = clamp(uv * size + 0.5, vec2(0.0), vec2(1.0)) * clamp((1.0 - uv) * size + 0.5, vec2(0.0), vec2(1.0));
@@ -146,7 +152,7 @@ float share_on_map(vec2 uv, vec2 size) {
 #if EXAMPLE == EXAMPLE_HPG_5 || EXAMPLE == EXAMPLE_HPG_6_3X3 || EXAMPLE == EXAMPLE_HPG_6_5X5 || EXAMPLE == EXAMPLE_HPG_6_RANDOM
 /// One comparison with the map of the second book's recipes. Their border has the depth 1.
 float compare_bordered(vec2 uv, float depth) {
-    float visible = textureLod(sampler2DShadow(shadow_map, shadow_sampler), vec3(uv, depth), 0.0);
+    float visible = textureLod(sampler2DShadow(shadow_map, shadow_sampler), vec3(uv, fixed_point(depth)), 0.0);
     return mix(1.0, visible, share_on_map(uv, vec2(textureSize(sampler2DShadow(shadow_map, shadow_sampler), 0))));
 }
 #endif
@@ -351,7 +357,7 @@ vec4 printed() {
     vec3 v = -normalize(in_position);
     // The sampler repeats the texels of the edge.
     vec3 at = projected(in_in_light);
-    float f = textureLod(sampler2DShadow(shadow_map, shadow_sampler), vec3(at.xy, at.z), 0.0);
+    float f = textureLod(sampler2DShadow(shadow_map, shadow_sampler), vec3(at.xy, fixed_point(at.z)), 0.0);
     return vec4(
         shade_oglpg_7_21(base * material.ambient, base * material.diffuse, material.specular, material.shininess, in_normal, l, v, f),
         1.0
@@ -394,7 +400,8 @@ vec4 printed() {
 }
 #elif EXAMPLE == EXAMPLE_NCL_11_FLAT || EXAMPLE == EXAMPLE_NCL_11_GOURAUD
 vec4 printed() {
-    vec4 base = in_color * texture(sampler2D(base_map, map_sampler), in_uv);
+    // The listing passes the colour of the vertices on, and does not read it.
+    vec4 base = texture(sampler2D(base_map, map_sampler), in_uv);
     return vec4(base.rgb * in_scattered + in_reflected, base.a);
 }
 #elif EXAMPLE == EXAMPLE_NCL_11_LIGHTMAP
@@ -404,7 +411,7 @@ vec4 printed() {
 }
 #elif EXAMPLE == EXAMPLE_NCL_11_PHONG || EXAMPLE == EXAMPLE_NCL_11_FURTHER_1 || EXAMPLE == EXAMPLE_NCL_11_FURTHER_2 || EXAMPLE == EXAMPLE_NCL_11_FURTHER_3 || EXAMPLE == EXAMPLE_NCL_11_FURTHER_4
 vec4 printed() {
-    vec4 base = in_color * texture(sampler2D(base_map, map_sampler), in_uv);
+    vec4 base = texture(sampler2D(base_map, map_sampler), in_uv);
 #if EXAMPLE == EXAMPLE_NCL_11_FURTHER_2
     vec3 color = vec3(0.0);
     for (uint i = 0u; i < min(lamps.count, 4u); i++) {

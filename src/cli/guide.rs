@@ -104,7 +104,7 @@ const ENTRIES: &[HelpEntry] = &[
         FIRST,
         &["lamplight render hpg_4_spot --executor eval --size 32x32 -o spot.png"],
     ),
-    guide_entry("probe", FIRST, &["lamplight probe studio"]),
+    guide_entry("probe", "In an engine", &["lamplight probe studio"]),
     guide_entry("mutate", CASES, &[]),
     guide_entry("export", "WESL without this tool", &["lamplight export shaders/lamplight"]),
     guide_entry(

@@ -112,8 +112,10 @@ fn projected(given: &Given, passed: &[DVec4]) -> Option<(DVec2, f64)> {
     (sc.w > given.number("caster.min_w")).then_some((place, at.z))
 }
 
-/// A comparison with a map whose border has the depth 1.
+/// A comparison with a map whose border has the depth 1. Its format is GL_DEPTH_COMPONENT24, with which
+/// OpenGL clamps the number that it compares.
 fn bordered(map: &FixtureTexture, place: DVec2, depth: f64) -> f64 {
+    let depth = depth.clamp(0.0, 1.0);
     let one = |x, y, texel| compared(depth, if is_inside(map, x, y) { texel } else { DVec4::ONE });
     filtered(map, place, one).x
 }

@@ -275,7 +275,9 @@ fn example_21(given: &Given, passed: &[DVec4], _: &Fragment) -> Option<DVec3> {
     let at = passed[4].truncate() / passed[4].w;
     // Clip space has y upwards, and rows of the map are counted from the top; depths are from 0 to 1.
     let place = glam::DVec2::new(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y);
-    let f = filtered(given.texture("shadow_map")?, place, |_, _, texel| compared(at.z, texel)).x;
+    // The format is GL_DEPTH_COMPONENT32, with which OpenGL clamps the number that it compares.
+    let depth = at.z.clamp(0.0, 1.0);
+    let f = filtered(given.texture("shadow_map")?, place, |_, _, texel| compared(depth, texel)).x;
     // In full shadow, nothing depends on the highlight.
     let specular = if f == 0.0 { 0.0 } else { power((-e).dot(r), own.shininess)?.max(0.0) };
     Some(base * own.ambient + f * (base * own.diffuse * diffuse + own.specular * specular))

@@ -13,10 +13,11 @@ use crate::render::{library, on_device, plan, rendered, shot};
 type Check = fn(&dyn Session) -> Result<(), String>;
 
 pub fn tests() -> Vec<Trial> {
-    let checks: [(&str, Check); 4] = [
+    let checks: [(&str, Check); 5] = [
         ("oglpg_7_6_differs_from_7_4", vertices_differ),
         ("hpg_4_spot_has_no_highlight", no_highlight),
         ("ncl_11_has_a_tenth_of_ambient_light", ambient_tenth),
+        ("ncl_11_has_the_color_of_its_texture", texture_alone),
         ("igl_1_ambient_fades_and_passes_the_cone", ambient_fades),
     ];
     let trial = |(name, check): (&str, Check)| {
@@ -110,6 +111,23 @@ fn ambient_tenth(painter: &dyn Session) -> Result<(), String> {
         println!("{name}: {} pixels, at most {most:.1e} from a tenth", pairs.len());
         if pairs.len() < 500 || most > 1e-5 {
             return Err(format!("{name}: {most} from a tenth"));
+        }
+    }
+    Ok(())
+}
+
+/// The tutorial's fragment shader reads the texture, and not the colour that its vertex shader passes.
+fn texture_alone(painter: &dyn Session) -> Result<(), String> {
+    for name in ["ncl_11_flat", "ncl_11_phong", "ncl_11_further_2"] {
+        let mut tinted = preset(name)?.clone();
+        let color = PresetNumber::Vector(vec![0.2, 0.9, 0.4]);
+        tinted.numbers.entry("object".to_owned()).or_default().insert("color".to_owned(), color);
+        let pairs =
+            pairs(&drawn(painter, &plan(preset(name)?)?)?, &drawn(painter, &plan(&tinted)?)?);
+        let most = largest(&pairs);
+        println!("{name}: {} pixels, at most {most:.1e} apart", pairs.len());
+        if pairs.len() < 500 || most > 1e-6 {
+            return Err(format!("{name}: the colour of the vertices changes it by {most}"));
         }
     }
     Ok(())

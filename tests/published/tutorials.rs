@@ -91,9 +91,10 @@ fn lit(given: &Given, light: &Light, normal: DVec3, position: DVec3) -> (DVec3, 
     (scattered, light.specular * s * 0.33 * light.atten * lambert)
 }
 
+/// `diffuse` of PerPixelFragment, which does not read `IN.colour`.
 fn diffuse(given: &Given, passed: &[DVec4]) -> Option<DVec3> {
     let uv = DVec2::new(passed[1].x, passed[1].y);
-    Some(passed[0].truncate() * repeated(given.texture("base_map")?, uv).truncate())
+    Some(repeated(given.texture("base_map")?, uv).truncate())
 }
 
 fn one_light(given: &Given, passed: &[DVec4], light: fn(&Given, DVec3) -> Light) -> Option<DVec3> {
@@ -115,7 +116,7 @@ fn four_lights(given: &Given, passed: &[DVec4], _: &Fragment) -> Option<DVec3> {
 
 fn lightmap(given: &Given, passed: &[DVec4], _: &Fragment) -> Option<DVec3> {
     let baked = repeated(given.texture("light_map")?, DVec2::new(passed[1].z, passed[1].w));
-    Some(diffuse(given, passed)? * baked.truncate())
+    Some(passed[0].truncate() * diffuse(given, passed)? * baked.truncate())
 }
 
 /// Gouraud shading: the light of the vertex.

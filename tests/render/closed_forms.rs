@@ -122,8 +122,8 @@ fn hemisphere(bench: &Bench<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// The safe form of the published preset for spherical harmonics: the irradiance depends on the normal as the
-/// formula says, and has the recorded values for five of the six axes.
+/// The safe form of the published preset for spherical harmonics: the irradiance depends on the normal
+/// as the formula says, and has the recorded values for five of the six axes.
 fn sh9(bench: &Bench<'_>) -> Result<(), String> {
     const AXES: [(DVec3, DVec3); 5] = [
         (DVec3::X, DVec3::new(0.705119, 0.669402, 0.628144)),

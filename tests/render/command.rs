@@ -23,6 +23,9 @@ const WRONG: &[(&[&str], i32, &str)] = &[
     (&["hpg_4_spot", "--executor", "spirv"], 2, "eval"),
     (&["hpg_4_spot", "--size", "0x8"], 2, "4096"),
     (&["hpg_4_spot", "--all"], 2, "--all"),
+    (&["tech_ggx", "--beside"], 1, "`tech_ggx` has no safe form"),
+    (&["shadow_filters", "--beside"], 1, "there is no preset `shadow_filters`"),
+    (&["oglpg_7_6", "--beside", "--camera", "0"], 2, "--camera"),
 ];
 
 pub fn tests() -> Vec<Trial> {

@@ -7,13 +7,14 @@
 //! doc = "A hard shadow that takes away half of the diffuse light."
 //! look = "The rim of a shadow has steps, and no shadow is darker than half of the light."
 //! source = "Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, shadow mapping"
-//! program = "forward"
-//! key = "ambient=none,lights=spot,max_lights=1,shadow=hard,specular=none"
+//! program = "published"
+//! key = "example=hpg_5"
+//! safe = "ambient=none,lights=point,max_lights=1,shadow=hard,specular=none"
 //! scene = "casters"
 //! passes = [{ program = "depth", key = "default" }]
 //! light = { shadow_strength = 0.5 }
 //! open = ["light.color", "light.position"]
-//! deviations = ["The map is compared with linear filtering, in the recipe with the nearest texel."]
+//! deviations = ["The scene is a ball, a ring and a box. The recipe's is a cube and a sphere on a plane."]
 //! ```
 //!
 //! `look` says what to look for in the picture. The tables `object`, `light`, `area`, `material`,

@@ -27,7 +27,7 @@ pub fn draw_beside(
     shot: &Shot,
 ) -> Result<Picture, Diagnostics> {
     let safe = preset.safe_form().ok_or_else(|| {
-        let message = format!("`{}` has no other form to stand beside it", preset.name);
+        let message = format!("`{}` has no safe form to draw beside it", preset.name);
         let note = "help: presets with a field `safe` have one, such as `oglpg_7_6`";
         vec![Diagnostic::error(codes::PICTURE_INVALID, message).note(note)]
     })?;

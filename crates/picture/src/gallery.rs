@@ -506,3 +506,23 @@ fn html_prose(text: &str) -> String {
     };
     text.split('`').enumerate().map(part).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pixels::srgb_code;
+
+    /// The head of both pages names the colour of the first ball, linear and coded.
+    #[test]
+    fn the_first_ball_has_the_colours_of_the_pages() {
+        let color = sets::scene("spheres").expect("a scene").objects[0].color.to_array();
+        let codes = [color.map(|part| (part * 255.0).round() as u8), color.map(srgb_code)];
+        let text = |codes: [u8; 3]| format!("({}, {}, {})", codes[0], codes[1], codes[2]);
+        for page in [markdown_page(&[], &[]), HEAD.to_owned()] {
+            assert!(page.contains(&format!("({}, {}, {})", color[0], color[1], color[2])));
+            for code in codes.map(text) {
+                assert!(page.contains(&code), "{code}");
+            }
+        }
+    }
+}

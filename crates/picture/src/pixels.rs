@@ -226,7 +226,7 @@ fn visible_part(seen: DVec3) -> DVec3 {
 }
 
 /// The 8-bit sRGB code of a linear number.
-fn srgb_code(linear: f64) -> u8 {
+pub(crate) fn srgb_code(linear: f64) -> u8 {
     (srgb_encoded(linear) * 255.0).round() as u8
 }
 

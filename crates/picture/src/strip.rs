@@ -20,7 +20,7 @@ use embedded_graphics::primitives::Rectangle;
 use embedded_graphics::text::{Baseline, Text};
 use glam::DVec3;
 use lamplight_bundle::Language;
-use lamplight_catalogue::preset::PresetNumber;
+use lamplight_catalogue::preset::{PresetNumber, SAFE};
 use lamplight_catalogue::reader;
 use lamplight_check::library::Library;
 use lamplight_diagnostic::source::{Embedded, SourceSet, Span};
@@ -167,11 +167,11 @@ pub struct Panel {
 }
 
 fn default_program() -> String {
-    "forward".to_owned()
+    SAFE.to_owned()
 }
 
 fn is_default_program(program: &str) -> bool {
-    program == default_program()
+    program == SAFE
 }
 
 fn default_one() -> u32 {

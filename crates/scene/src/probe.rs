@@ -124,7 +124,8 @@ impl CubeMap {
 /// exponent.
 /// Returns: the mean radiance, weighted by `max(cos, 0)^exponent`: a constant sky stays as it is,
 /// and the diffuse map times pi is the irradiance.
-/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, "Image-Based Lighting".
+/// Source: Kessenich, Sellers, Shreiner, OpenGL Programming Guide, 9th edition, 2016, "Image-Based
+/// Lighting".
 pub fn prefilter(sky: &Sky<'_>, exponent: f64, size: usize, rows: usize) -> CubeMap {
     let seen: Vec<(DVec3, f64, DVec3)> = directions(rows)
         .into_iter()

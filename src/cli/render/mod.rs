@@ -65,8 +65,8 @@ pub struct Arguments {
     #[arg(long, conflicts_with_all = ["preset", "set", "program", "scene", "cascades", "all"])]
     comparisons: bool,
     /// Draw a listing as it is printed, beside its safe form and the difference of the two.
-    #[arg(long, requires = "preset", conflicts_with_all = ["set", "program", "scene", "model", "all",
-        "comparisons", "cascades"])]
+    #[arg(long, requires = "preset", conflicts_with_all = ["set", "program", "scene", "model", "camera",
+        "all", "comparisons", "cascades"])]
     beside: bool,
     /// The file of the picture [default: the name of the preset, or `render.png`]; with `--all` and
     /// `--comparisons`, a folder [default: `gallery`].
@@ -136,11 +136,11 @@ fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {
             false => gallery::draw_comparisons(entry, &programs, &shot, folder),
         };
     }
-    if let Some(comparison) = named_comparison(&programs, arguments)? {
-        return draw_comparison(&programs, arguments, &comparison, &shot, entry);
-    }
     if arguments.beside {
         return draw_beside(&programs, arguments, &shot, entry);
+    }
+    if let Some(comparison) = named_comparison(&programs, arguments)? {
+        return draw_comparison(&programs, arguments, &comparison, &shot, entry);
     }
     let plan = make_plan(&programs, arguments)?;
     let painter = executor::open_executor(entry)?;
