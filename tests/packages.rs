@@ -35,6 +35,7 @@ pub fn tests() -> Vec<Trial> {
     let exported = [
         Trial::test("packages::wesl_toml", wesl_toml_is_read),
         Trial::test("packages::cargo", cargo_package_composes),
+        Trial::test("packages::cargo_with_visibility", cargo_package_is_public),
         Trial::test("packages::npm", npm_package_is_complete),
     ];
     exported.into_iter().chain(cases).collect()
@@ -94,6 +95,34 @@ fn cargo_package_composes() -> Result<(), Failed> {
         Validator::new(ValidationFlags::all(), Capabilities::empty())
             .validate(&parsed)
             .map_err(|error| format!("{error:?}\n{linked}"))?;
+    }
+    Ok(())
+}
+
+/// In the crate for `wesl` 0.6, other packages can name each function of each module. At night, the
+/// crate is built with that version.
+fn cargo_package_is_public() -> Result<(), Failed> {
+    let folder = tempfile::tempdir()?;
+    let command = ["export", "--form", "cargo", "--wesl", "0.6"];
+    run(Command::new(env!("CARGO_BIN_EXE_lamplight")).args(command).arg(folder.path()))?;
+    let package = folder.path().join("lamplight_wgsl");
+    let manifest = "[package]\nname = \"app\"\nroot = \".\"\n\n[dependencies]\n\
+                    lamplight = { path = \"lamplight_wgsl\" }\n";
+    std::fs::write(folder.path().join("wesl.toml"), manifest)?;
+    for module in modules() {
+        let name = module.replace('/', "_");
+        std::fs::write(folder.path().join(format!("{name}.wesl")), entry_wesl(&module))?;
+    }
+    let linted = run(Command::new(env!("CARGO_BIN_EXE_lamplight")).arg("lint").arg(folder.path()))?;
+    if !linted.contains(" 0 errors, 0 warnings") {
+        return Err(linted.into());
+    }
+    let specular = std::fs::read_to_string(package.join("src/shaders/brdf/specular.wesl"))?;
+    if !specular.contains("\npublic fn blinn_phong(") {
+        return Err("the items of the crate are not public".into());
+    }
+    if crate::is_whole() {
+        cargo(&package, &["build", "--quiet", "--ignore-rust-version"])?;
     }
     Ok(())
 }

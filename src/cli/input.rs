@@ -1,5 +1,6 @@
 //! What `compose` and `compile` share: a root module, its package, its settings.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -101,8 +102,10 @@ pub fn axis_value(text: &str) -> Result<(String, Setting), String> {
     Ok((plain_name(name)?, Setting::parse(value)))
 }
 
-fn is_integer(setting: &&(String, Setting)) -> bool {
-    matches!(setting.1, Setting::Int(_))
+/// The names of the settings that `--set` gives a number: these are integers.
+pub fn numbered(set: &[(String, Setting)]) -> BTreeSet<String> {
+    let is_integer = |setting: &&(String, Setting)| matches!(setting.1, Setting::Int(_));
+    set.iter().filter(is_integer).map(|(name, _)| name.clone()).collect()
 }
 
 /// Checks that text from an option can name a feature, an axis or a constant.
@@ -413,8 +416,7 @@ impl InputArguments {
     fn free(&self, root: &Path, sources: &mut SourceSet) -> Result<ChosenSettings, Diagnostics> {
         let mut settings = Settings {
             values: self.chosen().cloned().collect(),
-            // A setting that `--set` gives a number is an integer.
-            integers: self.set.iter().filter(is_integer).map(|(name, _)| name.clone()).collect(),
+            integers: numbered(&self.set),
             undeclared: self.features.undeclared(None),
             constants: self.features.constants(),
             ..Settings::default()

@@ -37,6 +37,7 @@ pub fn run_lint(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failur
     let (mut modules, mut errors, mut warnings) = (0, 0, 0);
     let settings = Settings {
         values: arguments.set.iter().chain(&arguments.feature).cloned().collect(),
+        integers: input::numbered(&arguments.set),
         undeclared: arguments.features.undeclared(None),
         constants: arguments.features.constants(),
         ..Settings::default()

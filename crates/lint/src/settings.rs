@@ -34,6 +34,7 @@ fn of_program(graph: &Graph, request: &Request<'_>, program: &Program) -> Vec<Se
     let settings = points.map(|point| {
         let mut settings = program.space.settings(&point);
         settings.values.extend(request.settings.values.clone());
+        settings.integers.extend(request.settings.integers.clone());
         settings.undeclared = request.settings.undeclared.or(settings.undeclared);
         without_errors(settings)
     });

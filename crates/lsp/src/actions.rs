@@ -40,7 +40,7 @@ pub fn code_actions(
             })
         };
         match diagnostic.get("code").and_then(Value::as_str) {
-            Some("unused-import" | "shadowed-import") => {
+            Some("unused-import") => {
                 if let Some(range) = import_part(&text, word) {
                     let edit = json!({ "range": lines.range(range), "newText": "" });
                     found.push(action(format!("Remove the import of `{name}`"), &uri, edit));

@@ -121,7 +121,7 @@ fn location_json(sources: &SourceSet, span: Span, library: LibraryAddress<'_>) -
 }
 
 fn with_code(found: &Diagnostic, range: Value, message: &str, related: Vec<Value>) -> Value {
-    let unused = ["unused-import", "shadowed-import"].contains(&found.code.name);
+    let unused = found.code.name == "unused-import";
     json!({
         "range": range,
         "severity": if found.severity == Severity::Error { 1 } else { 2 },

@@ -26,6 +26,10 @@ pub struct Arguments {
     /// read bundles.
     #[arg(long, value_enum, default_value_t)]
     form: ExportForm,
+    /// The version of the `wesl` crate that the crate of `--form cargo` is for. Since 0.6, items
+    /// that others may import are `public`; 0.4 does not read this word.
+    #[arg(long, value_enum, value_name = "VERSION", default_value_t)]
+    wesl: WeslVersion,
     #[command(flatten)]
     overwrite: Overwrite,
 }
@@ -41,6 +45,18 @@ enum ExportForm {
     Npm,
     /// `DIR/lamplight_c`: headers that read bundles in C and C++, and a package for CMake.
     C,
+}
+
+/// Versions of the `wesl` crate.
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+enum WeslVersion {
+    /// It reads no visibility.
+    #[default]
+    #[value(name = "0.4")]
+    Four,
+    /// It demands that items of other packages are public. It needs Rust 1.97.1.
+    #[value(name = "0.6")]
+    Six,
 }
 
 /// Path below the package's folder and text.
@@ -66,9 +82,14 @@ const KEYWORDS: [&str; 5] = ["WGSL", "WESL", "WebGPU", "lighting", "shadow"];
 const DESCRIPTION: &str = "Lighting and shadow functions for WGSL, tested function by function";
 
 pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
+    if arguments.wesl != WeslVersion::default() && !matches!(arguments.form, ExportForm::Cargo) {
+        return Err(Failure::usage("`--wesl` is for `--form cargo`"));
+    }
     let (name, contents) = match arguments.form {
         ExportForm::Files => (LIBRARY, exported_files()?),
-        ExportForm::Cargo => (cargo::NAME, cargo::crate_contents(library_modules()?)),
+        ExportForm::Cargo => {
+            (cargo::NAME, cargo::crate_contents(library_modules()?, arguments.wesl)?)
+        }
         ExportForm::Npm => {
             (npm::NAME, npm::npm_contents(library_modules()?, library_texts(&["glsl"])?))
         }

@@ -100,7 +100,10 @@ pub fn groups_are_known() -> Result<(), Failed> {
         let module = |line: &str| line.strip_prefix("mod ")?.strip_suffix(';').map(str::to_owned);
         groups.extend(text.lines().filter_map(module));
     }
-    let rows = needs.lines().filter_map(|line| line.trim().strip_prefix("(\"")?.split_once('"'));
+    let of_groups =
+        needs.split("const OF_GROUPS").nth(1).and_then(|rest| rest.split("\n];").next());
+    let rows = of_groups.unwrap_or_default().lines();
+    let rows = rows.filter_map(|line| line.trim().strip_prefix("(\"")?.split_once('"'));
     let named: Vec<&str> = rows.map(|(name, _)| name).collect();
     match named.iter().find(|name| !groups.contains(**name)) {
         _ if named.len() < 10 => Err("the table in xtask/src/test/needs.rs was not found".into()),

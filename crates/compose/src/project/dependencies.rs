@@ -146,9 +146,12 @@ impl FoundPackages {
         }
         let package = &mut self.packages[number];
         if number == ROOT {
-            return self
-                .warnings
+            self.warnings
                 .extend(names::warn_of_pairs(&package.scope, &|name| importer.place(name)));
+            if let Some(own) = own_name(importer, &table) {
+                package.scope.names.entry(own).or_insert(number);
+            }
+            return;
         }
         // A package may also name itself. Where it does not say how, it is by the name that others
         // have for it.
@@ -287,6 +290,17 @@ impl FoundPackages {
         self.labels.insert(label.clone());
         label
     }
+}
+
+/// The name by which the root package can import itself: what its `wesl.toml` says, or else its
+/// package manager's file. Only the former may be the name of the library.
+fn own_name(importer: Importer<'_>, table: &Table) -> Option<String> {
+    let declared = wesl_toml::name_in(table).map(str::to_owned);
+    declared.or_else(|| {
+        let manager = Manager::of(importer.folder, wesl_toml::manager_of(table)).ok()?;
+        let name = manager.own_name(importer.folder)?;
+        (name != LIBRARY && names::problem(&name, None).is_none()).then_some(name)
+    })
 }
 
 /// The error for a package other than the root that wants to replace the library.

@@ -53,6 +53,23 @@ impl Manager {
         }
     }
 
+    /// The name that the manager's file in the folder gives its package, as WESL can spell it.
+    pub fn own_name(self, folder: &Path) -> Option<String> {
+        let name = match self {
+            Self::Npm => {
+                let path = folder.join("package.json");
+                let bytes = input::read_file(&path, LIMITS.file_bytes as u64).ok()?;
+                let document: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
+                document.get("name")?.as_str()?.to_owned()
+            }
+            Self::Cargo => {
+                let table = read_table(&folder.join("Cargo.toml"))?;
+                table.get("package")?.get("name")?.as_str()?.to_owned()
+            }
+        };
+        Some(spelled_name(&name))
+    }
+
     /// The packages that the manager's nearest file lists, with the names that WESL can spell. A
     /// file further above is another package's.
     pub fn listed(self, folder: &Path) -> Vec<(String, String)> {

@@ -3,6 +3,7 @@
 //! This is the input end of the pipeline. The stages after it read through [`Packages`] only.
 
 mod dependencies;
+mod listed;
 mod managers;
 mod names;
 mod place;
@@ -65,7 +66,8 @@ pub fn packages(
         )]);
     }
     let disk = Disk::new(root).map_err(|error| vec![unreadable_file(root, &error)])?;
-    dependencies::packages(root, root_package(Box::new(disk)), sources, library)
+    let files = listed::ListedFiles::new(root, Box::new(disk));
+    dependencies::packages(root, root_package(Box::new(files)), sources, library)
 }
 
 /// A package that has no folder yet, together with the library. Its files come from elsewhere,

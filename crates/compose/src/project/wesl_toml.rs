@@ -135,14 +135,9 @@ pub(super) fn parse_tables(
 
 /// Checks that the values that are read have the expected types.
 fn check_values(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
-    let wrong_at = |what: &str, expected: &str, range: std::ops::Range<usize>| {
-        let message = format!("{what} of `wesl.toml` is not {expected}");
-        Err(Diagnostic::error(codes::WESL_TOML, message)
-            .at(Span::new(id, range), format!("expected {expected}")))
-    };
     let wrong = |what: &str, expected: &str, key: &str| {
         let start = text.find(key).unwrap_or(0);
-        wrong_at(what, expected, start..(start + key.len()).min(text.len()))
+        Err(wrong_value(what, expected, id, start..(start + key.len()).min(text.len())))
     };
     let package = table.get("package");
     if package.is_some_and(|package| !package.is_table()) {
@@ -157,19 +152,41 @@ fn check_values(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnosti
     if !is_inside(declared_in(table)) {
         return wrong("`root`", "a path below the file's folder", "root");
     }
+    for key in [INCLUDE, EXCLUDE] {
+        if !has_patterns(table, key) {
+            return wrong(&format!("`{key}`"), "a list of patterns of paths", key);
+        }
+    }
+    check_dependencies(table, id, text)
+}
+
+fn wrong_value(
+    what: &str,
+    expected: &str,
+    id: SourceId,
+    range: std::ops::Range<usize>,
+) -> Diagnostic {
+    let message = format!("{what} of `wesl.toml` is not {expected}");
+    Diagnostic::error(codes::WESL_TOML, message)
+        .at(Span::new(id, range), format!("expected {expected}"))
+}
+
+/// Checks that dependencies are tables with strings.
+fn check_dependencies(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
+    let wrong_at = |what: &str, expected: &str, range| Err(wrong_value(what, expected, id, range));
+    let wrong = |expected: &str| {
+        let start = text.find("dependencies").unwrap_or(0);
+        wrong_at("`dependencies`", expected, start..(start + 12).min(text.len()))
+    };
     let Some(dependencies) = table.get("dependencies") else { return Ok(()) };
     if dependencies.as_str() == Some(AUTO) {
         return Ok(());
     }
     let Some(dependencies) = dependencies.as_table() else {
-        return wrong("`dependencies`", "a table or `\"auto\"`", "dependencies");
+        return wrong("a table or `\"auto\"`");
     };
     if dependencies.len() > DEPENDENCIES {
-        return wrong(
-            "`dependencies`",
-            &format!("a table of at most {DEPENDENCIES} packages"),
-            "dependencies",
-        );
+        return wrong(&format!("a table of at most {DEPENDENCIES} packages"));
     }
     for (name, entry) in dependencies {
         if !entry.is_table() {
@@ -184,11 +201,51 @@ fn check_values(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnosti
     Ok(())
 }
 
+/// Whether a key has a list of patterns, or is not there.
+fn has_patterns(table: &Table, key: &str) -> bool {
+    let is_pattern =
+        |entry: &Value| entry.as_str().is_some_and(|text| glob::Pattern::new(text).is_ok());
+    let list = value_of(table, key).map(Value::as_array);
+    list.is_none_or(|list| list.is_some_and(|list| list.iter().all(is_pattern)))
+}
+
 /// What the file says about who installs packages.
 pub(super) fn manager_of(table: &Table) -> Option<&str> {
-    const KEY: &str = "package-manager";
-    let packaged = table.get("package").and_then(|package| package.get(KEY));
-    packaged.or_else(|| table.get(KEY)).and_then(Value::as_str)
+    value_of(table, "package-manager").and_then(Value::as_str)
+}
+
+/// A key of the table `package`, or else of the top level.
+fn value_of<'t>(table: &'t Table, key: &str) -> Option<&'t Value> {
+    let packaged = table.get("package").and_then(|package| package.get(key));
+    packaged.or_else(|| table.get(key))
+}
+
+const INCLUDE: &str = "include";
+const EXCLUDE: &str = "exclude";
+
+/// Which files a `wesl.toml` counts to its package.
+#[derive(Debug, Default)]
+pub(super) struct FilePatterns {
+    /// `None` where all files below the root are included.
+    pub include: Option<Vec<String>>,
+    pub exclude: Vec<String>,
+    /// The root, from the file's folder, with a `/` at the end; empty where it is that folder.
+    pub root: String,
+}
+
+/// The patterns of the `wesl.toml` that declares the root. A file that cannot be read has none: its
+/// error is reported where it is read for its dependencies.
+pub(super) fn patterns(root: &Path) -> FilePatterns {
+    let Some(table) = home(root).and_then(|home| table_of(&home)) else {
+        return FilePatterns::default();
+    };
+    let list = |key| {
+        let entries = value_of(&table, key)?.as_array()?.iter();
+        Some(entries.filter_map(|entry| Some(entry.as_str()?.to_owned())).collect())
+    };
+    let parts = declared_in(&table).split('/').filter(|part| !matches!(*part, "" | "."));
+    let root = parts.map(|part| format!("{part}/")).collect();
+    FilePatterns { include: list(INCLUDE), exclude: list(EXCLUDE).unwrap_or_default(), root }
 }
 
 /// A folder under the name that the user gave it.

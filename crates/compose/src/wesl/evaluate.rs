@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use rustc_hash::FxHashMap;
 
-use crate::resolve::wesl::{Graph, flag_places, shown_at};
+use crate::resolve::wesl::{Graph, NodeCondition, flag_places, shown_at};
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_files::limits::count_steps;
@@ -82,8 +82,8 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Whether all hold. Evaluation ends at the first that does not.
-    pub fn all_hold(&mut self, node: u32, conditions: &[ConditionId]) -> bool {
-        conditions.iter().all(|condition| self.holds(node, *condition))
+    pub fn all_hold(&mut self, conditions: &[NodeCondition]) -> bool {
+        conditions.iter().all(|one| self.holds(one.node, one.condition))
     }
 
     /// Visits the events of an item under these settings: uses of globals, cuts, and removed nodes.

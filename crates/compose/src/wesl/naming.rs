@@ -50,13 +50,17 @@ pub fn choose_names(
     let mut renames = ItemRenames { indices: vec![0; reached.len()], texts: Vec::new() };
     let mut made = HashSet::new();
     for thing in &things {
-        let name = name_of(graph, *thing);
-        let hold = name_hold(graph, *thing);
+        let name = reached.name(graph, *thing);
+        let hold = name_hold(graph, reached, *thing);
         let taken = table.free[name.0 as usize] || reached.is_hidden(*thing);
         if hold == Hold::Fixed || (hold == Hold::Root && !taken) {
             let clash = table.firm[name.0 as usize].replace(*thing).filter(|_| !taken);
             errors.extend(clash.map(|other| name_conflict(graph, *thing, other)));
             errors.extend(taken.then(|| captured_name(graph, *thing)));
+            if name != name_of(graph, *thing) {
+                renames.texts.push(graph.names.text(name).to_owned());
+                renames.indices[reached.index(*thing)] = renames.texts.len() as u32;
+            }
             continue;
         }
         let twin = table.loose[name.0 as usize]
@@ -89,8 +93,11 @@ fn kept_things(graph: &Graph, reached: &Reached) -> Vec<Thing> {
     things
 }
 
-fn name_hold(graph: &Graph, thing: Thing) -> Hold {
+fn name_hold(graph: &Graph, reached: &Reached, thing: Thing) -> Hold {
     let Thing::Item { node, item } = thing else { return Hold::Loose };
+    if reached.exposed.contains_key(&reached.index(thing)) {
+        return Hold::Fixed;
+    }
     let item = &graph.nodes[node as usize].module.items[item as usize];
     match item.kind {
         _ if item.entry => Hold::Fixed,
@@ -125,7 +132,7 @@ impl<'a> NameTable<'a> {
             loose: vec![None; count],
         };
         for thing in things {
-            table.claims[name_of(graph, *thing).0 as usize] += 1;
+            table.claims[reached.name(graph, *thing).0 as usize] += 1;
         }
         let free = reached.nodes().flat_map(|node| {
             let items = &graph.nodes[node as usize].module.items;

@@ -1,8 +1,10 @@
 //! Finds what a permutation keeps: from its roots along every use whose condition holds.
 
+use std::collections::BTreeMap;
+
 use super::evaluate::Evaluator;
 use super::reached::{Dependency, Reached, ReferenceMeaning, Thing, name_of};
-use crate::resolve::wesl::{Graph, PLACES, PathTarget};
+use crate::resolve::wesl::{Graph, ModuleNode, PLACES, PathTarget};
 use crate::{Keep, Options};
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, codes};
@@ -23,11 +25,13 @@ pub fn find_reached(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Opti
         bases: graph.nodes.iter().map(|node| node.bases.items).collect(),
         constants: vec![None; graph.constants.len()],
         dependencies: Vec::new(),
+        exposed: BTreeMap::new(),
         free: Vec::new(),
     };
     let (all, some) = (options.keep == Keep::All, matches!(options.keep, Keep::Items(_)));
     let mut walk = ReachWalk { graph, evaluator, all, some, reached, queue: Vec::new() };
     walk.node(0);
+    walk.expose();
     match &options.keep {
         Keep::EntryPoints => walk.entry_points(),
         Keep::Items(names) => names.iter().for_each(|name| walk.named(name)),
@@ -58,12 +62,63 @@ impl ReachWalk<'_, '_, '_> {
         for (index, _) in items.iter().enumerate().filter(|(_, item)| item.entry) {
             any |= self.item_if(0, index as u32);
         }
+        for (_, thing) in self.passed() {
+            if self.is_entry(thing) {
+                self.keep(thing);
+                any = true;
+            }
+        }
         if !any {
             self.everything();
         }
     }
 
+    /// What the root module passes on by `public import`, with the names that it gives.
+    fn passed(&mut self) -> Vec<(Name, Thing)> {
+        let graph = self.graph;
+        let mut found = Vec::new();
+        for (alias, candidate) in &graph.nodes[0].passed {
+            let PathTarget::Items { node, name } = candidate.target else { continue };
+            if self.evaluator.all_hold(&candidate.conditions)
+                && let Some(item) = self.chosen(node, name)
+            {
+                found.push((*alias, Thing::Item { node, item }));
+            }
+        }
+        found
+    }
+
+    fn is_entry(&self, thing: Thing) -> bool {
+        matches!(thing, Thing::Item { node, item }
+            if self.graph.nodes[node as usize].module.items[item as usize].entry)
+    }
+
+    /// Gives what the host can choose, set or bind the names under which the root module passes it
+    /// on.
+    fn expose(&mut self) {
+        let graph = self.graph;
+        for (alias, thing) in self.passed() {
+            let Thing::Item { node, item } = thing else { continue };
+            let module = &graph.nodes[node as usize].module;
+            let item = &module.items[item as usize];
+            if !(item.entry || matches!(item.kind, ItemKind::Override | ItemKind::Var)) {
+                continue;
+            }
+            let first = *self.reached.exposed.entry(self.reached.index(thing)).or_insert(alias);
+            if first != alias {
+                let [first, again] = [first, alias].map(|name| graph.names.text(name));
+                let message = format!("the host would know one item as `{first}` and `{again}`");
+                let place = module.span(item.name_range.clone());
+                let error = Diagnostic::error(codes::NAME_CONFLICT, message);
+                self.evaluator.errors.push(error.at(place, "passed on by two names"));
+            }
+        }
+    }
+
     fn everything(&mut self) {
+        for (_, thing) in self.passed() {
+            self.keep(thing);
+        }
         for index in 0..self.graph.nodes[0].module.items.len() as u32 {
             self.item_if(0, index);
             let name = self.graph.nodes[0].module.items[index as usize].name;
@@ -76,8 +131,14 @@ impl ReachWalk<'_, '_, '_> {
 
     fn named(&mut self, name: &str) {
         let set = self.graph.names.find(name).and_then(|name| self.graph.nodes[0].sets.get(&name));
-        let kept =
+        let mut kept =
             set.is_some_and(|set| set.iter().fold(false, |any, item| self.item_if(0, *item) | any));
+        for (alias, thing) in self.passed() {
+            if self.graph.names.text(alias) == name {
+                self.keep(thing);
+                kept = true;
+            }
+        }
         if !kept {
             let root = &self.graph.nodes[0];
             let known = root.module.items.iter().map(|item| self.graph.names.text(item.name));
@@ -167,7 +228,7 @@ impl ReachWalk<'_, '_, '_> {
         let here = &graph.nodes[node as usize];
         self.evaluator.errors.extend(here.module.errors.iter().cloned());
         for (conditions, failure) in &here.broken_imports {
-            if self.evaluator.all_hold(node, conditions) {
+            if self.evaluator.all_hold(conditions) {
                 self.evaluator.errors.push(graph.failures[*failure as usize].clone());
             }
         }
@@ -214,7 +275,7 @@ impl ReachWalk<'_, '_, '_> {
                     span: module.span(range.clone()),
                 });
             }
-            let name = name_of(graph, used);
+            let name = self.reached.name(graph, used);
             let written = &module.text[range.start as usize..range.end as usize];
             if item.locals.binary_search(&name).is_ok() && graph.names.text(name) != written {
                 let index = self.reached.index(used);
@@ -234,39 +295,74 @@ impl ReachWalk<'_, '_, '_> {
     fn find(&mut self, node: u32, reference: u32, span: Span) -> ReferenceMeaning {
         let graph = self.graph;
         let mut disabled = Vec::new();
+        let mut brought = None;
         for candidate in &graph.nodes[node as usize].bindings[reference as usize] {
             count_steps(1);
-            if !self.evaluator.all_hold(node, &candidate.conditions) {
+            if !self.evaluator.all_hold(&candidate.conditions) {
                 continue;
             }
-            match candidate.target {
-                PathTarget::Constant(index) => {
-                    return ReferenceMeaning::Thing(Thing::Constant(index));
-                }
+            let thing = match candidate.target {
+                PathTarget::Constant(index) => Thing::Constant(index),
                 PathTarget::Failed(index) => {
                     self.evaluator.errors.push(graph.failures[index as usize].clone());
                     return ReferenceMeaning::Free;
                 }
                 PathTarget::Module => {
-                    let error = Diagnostic::error(
-                        codes::NOT_AN_ITEM,
-                        "a module is not a value, a function or a type",
-                    )
-                    .at(span, "a module");
-                    self.evaluator
-                        .errors
-                        .push(error.note("help: name one of its items: `module::item`"));
+                    self.evaluator.errors.push(module_as_item(span));
                     return ReferenceMeaning::Free;
                 }
                 PathTarget::Items { node: other, name } => match self.chosen(other, name) {
-                    Some(item) => {
-                        return ReferenceMeaning::Thing(Thing::Item { node: other, item });
+                    Some(item) => self.shown(node, (other, item), span),
+                    None => {
+                        disabled.push((other, name));
+                        continue;
                     }
-                    None => disabled.push((other, name)),
                 },
+            };
+            match brought {
+                None if candidate.is_wildcard => brought = Some(thing),
+                None => return ReferenceMeaning::Thing(thing),
+                Some(first) if first == thing => {}
+                Some(first) => {
+                    let error = self.ambiguous([first, thing], span);
+                    self.evaluator.errors.push(error);
+                    return ReferenceMeaning::Free;
+                }
             }
         }
-        self.nothing(node, reference, span, &disabled)
+        match brought {
+            Some(thing) => ReferenceMeaning::Thing(thing),
+            None => self.nothing(node, reference, span, &disabled),
+        }
+    }
+
+    /// An item that is named in a module; with an error where the module cannot name it.
+    fn shown(&mut self, node: u32, (other, item): (u32, u32), span: Span) -> Thing {
+        let graph = self.graph;
+        let [here, there] = [node, other].map(|node| &graph.nodes[node as usize]);
+        let found = &there.module.items[item as usize];
+        // What another module passes on is public itself.
+        if there.module.says_visibility && !there.shows(found, here) {
+            self.evaluator.errors.push(there.not_visible(&graph.names, found, span));
+        }
+        Thing::Item { node: other, item }
+    }
+
+    /// The error about a name that two wildcards bring.
+    fn ambiguous(&self, things: [Thing; 2], span: Span) -> Diagnostic {
+        let graph = self.graph;
+        let name = graph.names.text(name_of(graph, things[0]));
+        let message = format!("two wildcards bring a `{name}`, and they differ");
+        let error = Diagnostic::error(codes::AMBIGUOUS_NAME, message).at(span, "used here");
+        let error = things.iter().fold(error, |error, thing| match thing {
+            Thing::Item { node, item } => {
+                let module = &graph.nodes[*node as usize].module;
+                let place = module.span(module.items[*item as usize].name_range.clone());
+                error.at(place, "one of them")
+            }
+            Thing::Constant(_) => error,
+        });
+        error.note("help: import the one that is meant by its name")
     }
 
     /// The item of a name whose condition holds.
@@ -300,9 +396,13 @@ impl ReachWalk<'_, '_, '_> {
         let graph = self.graph;
         let here = &graph.nodes[node as usize];
         let mut imports: &[usize] = &[];
+        // In a module with wildcards, any name may be one that they bring.
+        let is_open = here.bindings[reference as usize].is_empty();
         let text = match &here.module.references[reference as usize] {
             UsedName::Name(name)
-                if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&graph.names.text(*name)) =>
+                if is_open
+                    || naga::keywords::wgsl::BUILTIN_IDENTIFIERS
+                        .contains(&graph.names.text(*name)) =>
             {
                 self.reached.free.push(*name);
                 return ReferenceMeaning::Free;
@@ -316,14 +416,7 @@ impl ReachWalk<'_, '_, '_> {
         let message = format!("`{text}` exists but is disabled by its condition");
         let mut error = Diagnostic::error(codes::DISABLED_ITEM, message).at(span, "used here");
         for (other, name) in disabled {
-            let module = &graph.nodes[*other as usize].module;
-            let set = graph.nodes[*other as usize].sets.get(name);
-            for item in set.into_iter().flatten().take(PLACES) {
-                error = error.at(
-                    module.span(module.items[*item as usize].name_range.clone()),
-                    "not in this permutation",
-                );
-            }
+            error = at_disabled(error, &graph.nodes[*other as usize], *name);
         }
         for import in imports
             .iter()
@@ -337,6 +430,23 @@ impl ReachWalk<'_, '_, '_> {
         self.evaluator.errors.push(error);
         ReferenceMeaning::Free
     }
+}
+
+/// The error with the places of a module's items of a name.
+fn at_disabled(error: Diagnostic, node: &ModuleNode, name: Name) -> Diagnostic {
+    let items = node.sets.get(&name).into_iter().flatten().take(PLACES);
+    let place = |item: &u32| {
+        let item = &node.module.items[*item as usize];
+        node.module.span(item.name_range.clone())
+    };
+    items.map(place).fold(error, |error, place| error.at(place, "not in this permutation"))
+}
+
+fn module_as_item(span: Span) -> Diagnostic {
+    let message = "a module is not a value, a function or a type";
+    Diagnostic::error(codes::NOT_AN_ITEM, message)
+        .at(span, "a module")
+        .note("help: name one of its items: `module::item`")
 }
 
 /// Where the body of a function begins. Nothing before it has braces but comments.

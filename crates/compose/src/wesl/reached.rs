@@ -3,6 +3,7 @@
 use crate::resolve::wesl::Graph;
 use lamplight_diagnostic::source::Span;
 use lamplight_syntax::wesl::Name;
+use std::collections::BTreeMap;
 
 /// An item, or a number from the virtual module `constants`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -43,6 +44,8 @@ pub struct Reached {
     /// For each constant, its value as text.
     pub constants: Vec<Option<(&'static str, String)>>,
     pub dependencies: Vec<Dependency>,
+    /// By the index of a thing: the name under which the root module passes it on to the host.
+    pub exposed: BTreeMap<usize, Name>,
     /// Predeclared names that are used although the module has a disabled item of that name.
     pub free: Vec<Name>,
 }
@@ -54,6 +57,11 @@ impl Reached {
             Thing::Item { node, item } => (self.bases[node as usize] + item) as usize,
             Thing::Constant(index) => (self.items + index) as usize,
         }
+    }
+
+    /// The name that a thing has for the host and for the text, unless another thing has it.
+    pub fn name(&self, graph: &Graph, thing: Thing) -> Name {
+        self.exposed.get(&self.index(thing)).copied().unwrap_or_else(|| name_of(graph, thing))
     }
 
     pub fn has(&self, thing: Thing) -> bool {

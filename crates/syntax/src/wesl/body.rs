@@ -40,6 +40,7 @@ pub fn scan_body(
     let mut scanner = BodyScanner {
         tokens,
         global,
+        is_open: !module.wildcards.is_empty(),
         named: HashMap::new(),
         paths: HashMap::new(),
         scopes: Scopes::new(names.len()),
@@ -77,6 +78,8 @@ struct BodyScanner<'a, 'b> {
     scopes: Scopes,
     /// By name: whether it is declared in the module's scope.
     global: Vec<bool>,
+    /// Whether the module may get any name from a wildcard.
+    is_open: bool,
     named: HashMap<Name, u32>,
     paths: HashMap<(Origin, Vec<Name>), u32>,
     events: Vec<Event>,
@@ -94,7 +97,12 @@ impl BodyScanner<'_, '_> {
     }
 
     fn item(&mut self, place: ItemPlace, kind: ItemKind) -> Result<(), Diagnostic> {
-        self.attributes(place.start, place.keyword)?;
+        self.attributes(place.start, place.attributes)?;
+        if place.attributes < place.keyword {
+            let bytes = self.tokens.range(place.attributes, place.keyword);
+            let end = item::skip_blank(self.tokens.text, bytes.end);
+            self.events.push(Event::Cut { start: bytes.start, end });
+        }
         let mut at = place.keyword + 1;
         if kind == ItemKind::Var {
             at = self.var_template(at);
@@ -316,7 +324,7 @@ impl BodyScanner<'_, '_> {
             self.trace(at, name);
         }
         let IdentifierMeaning::Global(guard) = self.scopes.meaning(name) else { return };
-        if !self.global[name.0 as usize] {
+        if !self.global[name.0 as usize] && !self.is_open {
             self.free.push(name);
             return;
         }

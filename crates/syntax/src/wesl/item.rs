@@ -6,6 +6,7 @@ use crate::wesl::blank::comment_length;
 use crate::wesl::condition::{Attributes, Chain};
 use crate::wesl::module::{
     ConditionId, Directive, Event, Import, Item, ItemKind, Module, Origin, Path, PathParts,
+    Visibility, Wildcard,
 };
 use crate::wesl::token::{Name, Names, Token, TokenKind, Tokens};
 use crate::wesl::{body, condition};
@@ -15,8 +16,10 @@ use std::ops::Range;
 /// Where the parts of an item are among the tokens.
 #[derive(Debug, Clone, Copy)]
 pub struct ItemPlace {
-    /// Its first attribute, or its keyword.
+    /// Its first attribute, or what comes next.
     pub start: usize,
+    /// After its attributes: `public` or `private`, or its keyword.
+    pub attributes: usize,
     pub keyword: usize,
     /// After its last token.
     pub end: usize,
@@ -63,10 +66,8 @@ fn recover_from(tokens: Tokens<'_>, from: usize, limit: usize) -> usize {
             continue;
         }
         let start = first_attribute.take().unwrap_or(at);
-        let begins = KINDS.iter().any(|(name, _)| tokens.is_word(at, *name))
-            || tokens.is_word(at, Name::IMPORT);
         let is_named = tokens.word(at + 1).is_some() || tokens.is(at + 1, b'<');
-        if begins && is_named && start > from {
+        if begins_declaration(tokens, at) && is_named && start > from {
             return start;
         }
         if tokens.is(at, b';') {
@@ -79,6 +80,27 @@ fn recover_from(tokens: Tokens<'_>, from: usize, limit: usize) -> usize {
         }
     }
     at.min(limit)
+}
+
+/// The visibility that a word before a declaration or an import says. Elsewhere the words are plain
+/// identifiers.
+fn visibility_at(tokens: Tokens<'_>, at: usize) -> Option<Visibility> {
+    let said = match tokens.text(at) {
+        "public" => Visibility::Public,
+        "private" => Visibility::Private,
+        _ => return None,
+    };
+    begins_keyword(tokens, at + 1).then_some(said)
+}
+
+/// Whether a word is the keyword of a declaration or an import.
+fn begins_keyword(tokens: Tokens<'_>, at: usize) -> bool {
+    KINDS.iter().any(|(name, _)| tokens.is_word(at, *name)) || tokens.is_word(at, Name::IMPORT)
+}
+
+/// Whether a declaration or an import begins at a word.
+fn begins_declaration(tokens: Tokens<'_>, at: usize) -> bool {
+    begins_keyword(tokens, at) || visibility_at(tokens, at).is_some()
 }
 
 struct ItemSplitter<'a, 'b> {
@@ -116,13 +138,17 @@ impl ItemSplitter<'_, '_> {
         if self.tokens.is(at, b';') {
             return Ok(at + 1);
         }
+        if self.tokens.is(at, b'@') && self.tokens.is(at + 1, b'!') {
+            return self.module_attribute(at);
+        }
         let attributes = condition::read_attributes(self.module, self.tokens, at, &mut self.chain);
-        let keyword = attributes.end;
-        if self.tokens.is(keyword, b'{') {
+        if self.tokens.is(attributes.end, b'{') {
             return self.block(at, attributes);
         }
+        let visibility = visibility_at(self.tokens, attributes.end);
+        let keyword = attributes.end + usize::from(visibility.is_some());
         match self.tokens.word(keyword) {
-            Some(Name::IMPORT) => self.import(keyword, attributes),
+            Some(Name::IMPORT) => self.import(at, keyword, attributes),
             Some(word @ (Name::ENABLE | Name::REQUIRES | Name::DIAGNOSTIC)) => {
                 self.directive(keyword, word, attributes)
             }
@@ -161,7 +187,34 @@ impl ItemSplitter<'_, '_> {
         Ok(close + 1)
     }
 
-    fn import(&mut self, keyword: usize, attributes: Attributes) -> Result<usize, Diagnostic> {
+    /// `@!name;` or `@!name(...);`, which says something about the whole module.
+    fn module_attribute(&mut self, at: usize) -> Result<usize, Diagnostic> {
+        let (tokens, name_at) = (self.tokens, at + 2);
+        let name = tokens
+            .word(name_at)
+            .ok_or_else(|| tokens.expected(name_at, "the name of an attribute of the module"))?;
+        let open = tokens.is(name_at + 1, b'(').then_some(name_at + 1);
+        let end = open.map_or(name_at + 1, |open| tokens.partner(open) + 1);
+        let after = tokens.expect(end, b';', "`;` after the attribute of the module")?;
+        match tokens.names.text(name) {
+            "wildcardable" => self.module.is_wildcardable = true,
+            other => {
+                let message = format!("there is no attribute `@!{other}` of modules");
+                let warning = Diagnostic::warning(codes::UNKNOWN_ATTRIBUTE, message);
+                let warning = warning.at(tokens.span(name_at), "has no effect");
+                self.module.warnings.push(warning.suggest(other, ["wildcardable"]));
+            }
+        }
+        Ok(after)
+    }
+
+    /// The import whose keyword is at a token, and whose first token is `start`.
+    fn import(
+        &mut self,
+        start: usize,
+        keyword: usize,
+        attributes: Attributes,
+    ) -> Result<usize, Diagnostic> {
         if self.chain.within.is_some() {
             self.module.warnings.push(body::import_inside(self.tokens, keyword));
         }
@@ -171,7 +224,16 @@ impl ItemSplitter<'_, '_> {
                 .errors
                 .push(error.at(self.tokens.span(keyword), "imports come first in a file"));
         }
-        read_import(self.module, self.tokens, keyword, attributes.condition)
+        let visibility = visibility_at(self.tokens, attributes.end);
+        if visibility == Some(Visibility::Private) {
+            return Err(Diagnostic::error(codes::SYNTAX_ERROR, "an `import` that is `private`")
+                .at(self.tokens.span(attributes.end), "an import is for its own module anyway")
+                .note("help: remove `private`"));
+        }
+        let off = rules_turned_off(self.tokens, start, attributes.end);
+        let condition = attributes.condition;
+        let statement = ImportStatement { condition, is_public: visibility.is_some(), off };
+        read_import(self.module, self.tokens, keyword, statement)
     }
 
     fn directive(
@@ -203,7 +265,11 @@ impl ItemSplitter<'_, '_> {
         attributes: Attributes,
         kind: ItemKind,
     ) -> Result<usize, Diagnostic> {
-        let keyword = attributes.end;
+        let said = visibility_at(self.tokens, attributes.end);
+        if let Some(visibility) = said {
+            self.check_visibility(start, attributes, kind, visibility)?;
+        }
+        let keyword = attributes.end + usize::from(said.is_some());
         let name_at = self.name_at(keyword, kind);
         let name = match kind {
             ItemKind::ConstAssert => Name::UNDERSCORE,
@@ -221,6 +287,7 @@ impl ItemSplitter<'_, '_> {
         let last = trailing_end(text, bytes.end, self.tokens.start(end));
         self.module.items.push(Item {
             kind,
+            visibility: said.unwrap_or(Visibility::Package),
             name,
             name_range: self.tokens.range(name_at, name_at + 1),
             range: first..last,
@@ -230,8 +297,34 @@ impl ItemSplitter<'_, '_> {
             locals: Vec::new(),
             free: Vec::new(),
         });
-        self.places.push(ItemPlace { start, keyword, end });
+        self.places.push(ItemPlace { start, attributes: attributes.end, keyword, end });
         Ok(end)
+    }
+
+    /// Refuses visibility of what has no name, or of what the host asks for by name.
+    fn check_visibility(
+        &self,
+        start: usize,
+        attributes: Attributes,
+        kind: ItemKind,
+        visibility: Visibility,
+    ) -> Result<(), Diagnostic> {
+        let is_private = visibility == Visibility::Private;
+        let is_bound = || has_attribute(self.tokens, start, attributes.end, "group");
+        let (message, label) = match kind {
+            ItemKind::ConstAssert => {
+                ("a `const_assert` cannot be `public` or `private`", "it declares no name")
+            }
+            ItemKind::Function if is_private && attributes.entry => {
+                ("an entry point cannot be `private`", "the host could never choose it")
+            }
+            ItemKind::Var if is_private && is_bound() => {
+                ("a variable with a binding cannot be `private`", "the host could never bind it")
+            }
+            _ => return Ok(()),
+        };
+        let error = Diagnostic::error(codes::SYNTAX_ERROR, message);
+        Err(error.at(self.tokens.span(attributes.end), label))
     }
 
     /// The token with the declared name; for a `const_assert`, the keyword.
@@ -273,9 +366,7 @@ impl ItemSplitter<'_, '_> {
 
     /// Whether a word or an attribute begins a declaration.
     fn begins_item(&self, at: usize) -> bool {
-        self.tokens.is(at, b'@')
-            || KINDS.iter().any(|(name, _)| self.tokens.is_word(at, *name))
-            || self.tokens.is_word(at, Name::IMPORT)
+        self.tokens.is(at, b'@') || begins_declaration(self.tokens, at)
     }
 
     fn starts_node(&self, at: usize) -> bool {
@@ -308,12 +399,47 @@ pub fn after_template(tokens: Tokens<'_>, at: usize) -> usize {
     at
 }
 
+/// What an import statement says of all that it brings.
+struct ImportStatement {
+    condition: Option<ConditionId>,
+    is_public: bool,
+    /// Rules that its `@diagnostic(off, ...)` turn off.
+    off: Vec<Name>,
+}
+
+/// The rules that the attributes in `at..end` turn off.
+fn rules_turned_off(tokens: Tokens<'_>, mut at: usize, end: usize) -> Vec<Name> {
+    let mut found = Vec::new();
+    while at < end {
+        let open = tokens.is(at + 2, b'(').then_some(at + 2);
+        if let Some(open) = open.filter(|open| {
+            tokens.is_word(at + 1, Name::DIAGNOSTIC) && tokens.text(open + 1) == "off"
+        }) {
+            found.extend(tokens.word(open + 3));
+        }
+        at = open.map_or(at + 2, |open| tokens.partner(open) + 1);
+    }
+    found
+}
+
+/// Whether the attributes in `at..end` have one of the name.
+fn has_attribute(tokens: Tokens<'_>, mut at: usize, end: usize, name: &str) -> bool {
+    while at < end {
+        if tokens.text(at + 1) == name {
+            return true;
+        }
+        let open = tokens.is(at + 2, b'(').then_some(at + 2);
+        at = open.map_or(at + 2, |open| tokens.partner(open) + 1);
+    }
+    false
+}
+
 /// Reads the statement whose `import` is at `at`; returns the index past its semicolon.
 fn read_import(
     module: &mut Module,
     tokens: Tokens<'_>,
     at: usize,
-    condition: Option<ConditionId>,
+    statement: ImportStatement,
 ) -> Result<usize, Diagnostic> {
     let first = at + 1;
     let (origin, after) = read_origin(tokens, first)?;
@@ -321,7 +447,7 @@ fn read_import(
     let parts =
         PathParts { first: nowhere.clone(), parents: nowhere.clone(), last: nowhere.clone() };
     let path = Path { origin, segments: Vec::new(), range: nowhere, parts };
-    let mut reader = ImportReader { module, tokens, condition, at: after };
+    let mut reader = ImportReader { module, tokens, statement, at: after };
     match reader.tokens.is(after, b'{') {
         true => reader.collection(&path)?,
         false => reader.path(path, Some(first))?,
@@ -369,7 +495,7 @@ fn misplaced_as(tokens: Tokens<'_>, at: usize) -> Diagnostic {
 struct ImportReader<'a, 'b> {
     module: &'a mut Module,
     tokens: Tokens<'b>,
-    condition: Option<ConditionId>,
+    statement: ImportStatement,
     at: usize,
 }
 
@@ -381,6 +507,9 @@ impl ImportReader<'_, '_> {
     fn path(&mut self, mut path: Path, start: Option<usize>) -> Result<(), Diagnostic> {
         let own = start.unwrap_or(self.at);
         loop {
+            if self.tokens.is(self.at, b'*') {
+                return self.wildcard(path, own);
+            }
             if self.tokens.is_word(self.at, Name::AS) {
                 return Err(misplaced_as(self.tokens, self.at));
             }
@@ -413,7 +542,36 @@ impl ImportReader<'_, '_> {
         }
         let alias = self.tokens.identifier(alias_at, "a name after `as`")?;
         let alias_range = self.tokens.range(alias_at, alias_at + 1);
-        self.module.imports.push(Import { condition: self.condition, path, alias, alias_range });
+        let (condition, is_public) = (self.statement.condition, self.statement.is_public);
+        self.module.imports.push(Import { condition, path, alias, alias_range, is_public });
+        Ok(())
+    }
+
+    /// The `*` at the end of a path, whose first token in this piece is `own`.
+    fn wildcard(&mut self, path: Path, own: usize) -> Result<(), Diagnostic> {
+        let star = self.tokens.span(self.at);
+        let wrong = |message: &str, label: &str| {
+            Err(Diagnostic::error(codes::SYNTAX_ERROR, message).at(star, label))
+        };
+        if path.segments.is_empty() && path.origin == Origin::Scope {
+            return wrong("a `*` without a module", "write the path of a module before it");
+        }
+        if self.statement.is_public {
+            return wrong(
+                "a `public import` of a `*`",
+                "WESL has no meaning for it: name the items",
+            );
+        }
+        let range = self.tokens.range(self.at, self.at + 1);
+        let whole = match self.at > own {
+            true => self.tokens.range(own, self.at - 1),
+            false if path.parts.parents.is_empty() => range.clone(),
+            false => path.parts.parents.clone(),
+        };
+        let path = Path { range: whole, ..path };
+        let (condition, off) = (self.statement.condition, self.statement.off.clone());
+        self.module.wildcards.push(Wildcard { condition, path, range, off });
+        self.at += 1;
         Ok(())
     }
 

@@ -16,7 +16,7 @@ pub use item::{ItemPlace, after_template, read_origin};
 pub use module::{
     ComparisonOperand, ComparisonOperator, Condition, ConditionId, Directive, Event, Expression,
     ExpressionId, Guard, Import, Item, ItemKind, LocalUse, Module, Origin, Path, PathParts,
-    PlacedModule, UsedName,
+    PlacedModule, UsedName, Visibility, Wildcard,
 };
 pub use token::{Name, Names, Token, TokenKind, Tokens, is_keyword, is_path_name, keywords};
 
@@ -71,6 +71,9 @@ fn empty_module(source: SourceId, text: Arc<str>) -> Module {
         text,
         directives: Vec::new(),
         imports: Vec::new(),
+        wildcards: Vec::new(),
+        is_wildcardable: false,
+        says_visibility: false,
         items: Vec::new(),
         conditions: Vec::new(),
         expressions: Vec::new(),
@@ -82,11 +85,18 @@ fn empty_module(source: SourceId, text: Arc<str>) -> Module {
     }
 }
 
+fn says_visibility(module: &Module) -> bool {
+    module.items.iter().any(|item| item.visibility != Visibility::Package)
+        || module.imports.iter().any(|import| import.is_public)
+        || module.is_wildcardable
+}
+
 fn parse_with(source: SourceId, text: Arc<str>, names: &mut Names, locals: bool) -> Module {
     let mut module = empty_module(source, Arc::clone(&text));
     match token::tokenize_damaged(&text, source, names) {
         Ok(token::DamagedTokens { tokens, error }) => {
             let found = item::split_items(&mut module, &tokens, names);
+            module.says_visibility = says_visibility(&module);
             body::scan_body(&mut module, &tokens, names, found, locals);
             if let Some(error) = error {
                 // What else is found may follow from it.

@@ -16,6 +16,12 @@ pub struct Module {
     pub text: Arc<str>,
     pub directives: Vec<Directive>,
     pub imports: Vec<Import>,
+    pub wildcards: Vec<Wildcard>,
+    /// Whether other packages may import all that it shows, by `@!wildcardable;`.
+    pub is_wildcardable: bool,
+    /// Whether anything in it says from where it can be named. Modules that are older than these words
+    /// do not, and show all that they declare.
+    pub says_visibility: bool,
     pub items: Vec<Item>,
     pub conditions: Vec<Condition>,
     pub expressions: Vec<Expression>,
@@ -173,6 +179,20 @@ pub struct Import {
     /// The name in scope.
     pub alias: Name,
     pub alias_range: Range<u32>,
+    /// Whether the name can also be imported from this module, by `public import`.
+    pub is_public: bool,
+}
+
+/// `import a::b::*;`: what the module shows, unless something else has the name.
+#[derive(Debug)]
+pub struct Wildcard {
+    pub condition: Option<ConditionId>,
+    /// The module. Without segments, it is the package's own module, or that so many `super` above.
+    pub path: Path,
+    /// The `*`.
+    pub range: Range<u32>,
+    /// Which of the rules for wildcards between packages a `@diagnostic(off, ...)` turns off.
+    pub off: Vec<Name>,
 }
 
 /// `package::a::b`, `super::super::c` or `d::e`.
@@ -216,10 +236,22 @@ pub enum ItemKind {
     ConstAssert,
 }
 
+/// From where a declaration can be named.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Visibility {
+    /// From its own module, by `private`.
+    Private,
+    /// From its own package.
+    Package,
+    /// From every package, by `public`.
+    Public,
+}
+
 /// A global declaration.
 #[derive(Debug)]
 pub struct Item {
     pub kind: ItemKind,
+    pub visibility: Visibility,
     /// [`Name::UNDERSCORE`] for a `const_assert`.
     pub name: Name,
     pub name_range: Range<u32>,

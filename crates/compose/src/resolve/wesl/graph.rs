@@ -7,7 +7,9 @@ use rustc_hash::FxHashMap;
 
 use lamplight_diagnostic::source::{Embedded, SourceId, Span};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
-use lamplight_syntax::wesl::{ConditionId, Expression, Name, Names, PlacedModule};
+use lamplight_syntax::wesl::{
+    ConditionId, Expression, Item, Name, Names, PlacedModule, Visibility,
+};
 
 /// The most imports that a diagnostic lists of the chain that led to its file.
 const TRACED: usize = 16;
@@ -105,7 +107,9 @@ pub struct ModuleNode {
     pub bindings: Arc<Vec<Vec<Candidate>>>,
     /// Imports that lead nowhere, with their conditions. They are reported if the module is reached
     /// and the conditions hold.
-    pub broken_imports: Vec<(Vec<ConditionId>, u32)>,
+    pub broken_imports: Vec<(Vec<NodeCondition>, u32)>,
+    /// What its `public import` statements pass on, by the names that they give it.
+    pub passed: Vec<(Name, Candidate)>,
     /// Declarations of a name that is declared twice under the same condition. These failures are
     /// reported if the module is reached, unless items were asked for by name.
     pub duplicates: Vec<(Option<ConditionId>, u32)>,
@@ -118,6 +122,39 @@ pub struct ModuleNode {
 }
 
 impl ModuleNode {
+    /// Whether another module can name an item of this one.
+    pub fn shows(&self, item: &Item, other: &ModuleNode) -> bool {
+        match item.visibility {
+            Visibility::Public => true,
+            Visibility::Package => self.package == other.package || !self.module.says_visibility,
+            Visibility::Private => self.package == other.package && self.path == other.path,
+        }
+    }
+
+    /// Whether another module can name an item of this one that has the name.
+    pub fn shows_name(&self, name: Name, other: &ModuleNode) -> bool {
+        let items = self.sets.get(&name).into_iter().flatten();
+        items.into_iter().any(|index| self.shows(&self.module.items[*index as usize], other))
+    }
+
+    /// The error about an item that cannot be named at a place of another module.
+    pub fn not_visible(&self, names: &Names, item: &Item, place: Span) -> Diagnostic {
+        let text = names.text(item.name);
+        let (message, help) = match item.visibility {
+            Visibility::Private => {
+                (format!("`{text}` is private to `{}`", self.label), "remove `private`")
+            }
+            _ => (
+                format!("`{text}` of `{}` is not public", self.label),
+                "write `public` before the declaration",
+            ),
+        };
+        Diagnostic::error(codes::NOT_VISIBLE, message)
+            .at(place, "cannot be named here")
+            .at(self.module.span(item.name_range.clone()), "declared here")
+            .note(format!("help: {help}"))
+    }
+
     /// The error about an item whose name an earlier one has, by their indices.
     pub fn declared_twice(&self, names: &Names, again: usize, first: usize) -> Diagnostic {
         let [again, first] = [again, first].map(|index| &self.module.items[index]);
@@ -138,10 +175,28 @@ pub struct Importer {
 /// One thing that a use may mean.
 #[derive(Debug, Clone)]
 pub struct Candidate {
-    /// Conditions of the module that uses it. All must hold.
-    pub conditions: Vec<ConditionId>,
+    /// Conditions of the modules that it goes through. All must hold.
+    pub conditions: Vec<NodeCondition>,
     /// What the import leads to.
     pub target: PathTarget,
+    /// Whether a wildcard brings it. Two of these must not lead to different things.
+    pub is_wildcard: bool,
+}
+
+impl Candidate {
+    /// What is meant whatever the settings are.
+    pub fn certain(target: PathTarget) -> Self {
+        Self { conditions: Vec::new(), target, is_wildcard: false }
+    }
+}
+
+/// A condition of a module.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NodeCondition {
+    /// Number of the module.
+    pub node: u32,
+    /// The condition in it.
+    pub condition: ConditionId,
 }
 
 /// What a path leads to.

@@ -6,10 +6,11 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::graph::{Candidate, Graph, ModuleNode, PathTarget};
 use super::load::Loader;
+use super::wildcard::WildcardModule;
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_permute::Settings;
-use lamplight_syntax::wesl::{ConditionId, Expression, Name, Origin, Path, UsedName};
+use lamplight_syntax::wesl::{ConditionId, Expression, ItemKind, Name, Origin, Path, UsedName};
 
 /// Warnings about a module: those of the parser, and those about its imports. Modules of
 /// dependencies have none, since their users cannot change them.
@@ -20,53 +21,72 @@ pub fn import_lints(loader: &Loader<'_>, node: &ModuleNode) -> Vec<Diagnostic> {
     let names = &loader.names;
     let mut found = node.module.warnings.clone();
     let used = used_names(node);
-    for import in &node.module.imports {
+    for (import, targets) in node.module.imports.iter().zip(node.imports.iter()) {
+        if import.is_public || used.contains(&import.alias) {
+            continue;
+        }
         let (text, span) = (names.text(import.alias), node.module.span(import.alias_range.clone()));
-        let own = node
-            .sets
-            .get(&import.alias)
-            .and_then(|set| set.first())
-            .map(|index| &node.module.items[*index as usize]);
-        match own {
-            Some(item) if item.condition.is_none() && import.condition.is_none() => found.push(
-                Diagnostic::warning(
-                    codes::SHADOWED_IMPORT,
-                    format!("`{text}` is both imported and declared"),
-                )
-                .at(span, "this import has no effect")
-                .at(node.module.span(item.name_range.clone()), "the declaration wins"),
-            ),
-            _ if !used.contains(&import.alias) => {
-                let message = format!("`{text}` is imported but never used");
-                let warning =
-                    Diagnostic::warning(codes::UNUSED_IMPORT, message).at(span, "not used");
-                found.push(match absent_package(loader, node, &import.path) {
-                    Some(package) => warning.note(format!("there is no package `{package}`")),
-                    None => warning,
-                });
-            }
-            _ => {}
+        // Nothing uses it, so it is no error if it leads nowhere.
+        let failure = targets.iter().find_map(|target| match target {
+            PathTarget::Failed(failure) => Some(&loader.failures[*failure as usize].message),
+            _ => None,
+        });
+        let message = format!("`{text}` is imported but never used");
+        let warning = Diagnostic::warning(codes::UNUSED_IMPORT, message).at(span, "not used");
+        found.push(match failure {
+            Some(failure) => warning.note(failure.clone()),
+            None => warning,
+        });
+    }
+    found
+}
+
+/// Warnings about names that a wildcard brings, and that the module has another way; and those about
+/// what a module for wildcards declares.
+pub fn wildcard_lints(
+    loader: &mut Loader<'_>,
+    node: u32,
+    wildcards: &[WildcardModule],
+) -> Vec<Diagnostic> {
+    if loader.nodes[node as usize].package != 0 {
+        return Vec::new();
+    }
+    let module = loader.nodes[node as usize].module.shared();
+    let items = module.items.iter().map(|item| (item.name, item.name_range.clone()));
+    let imports = module.imports.iter().map(|import| (import.alias, import.alias_range.clone()));
+    let mut found = Vec::new();
+    for (name, range) in items.chain(imports).filter(|(name, _)| *name != Name::UNDERSCORE) {
+        let brought =
+            wildcards.iter().find(|module| !loader.brought(node, module, name).is_empty());
+        if let Some(from) = brought.filter(|_| !is_off(loader, node, "wildcard_shadow")) {
+            let (text, from) = (loader.names.text(name), &loader.nodes[from.node as usize].label);
+            let message = format!("the wildcard of `{from}` brings `{text}` too");
+            let place = loader.nodes[node as usize].module.span(range);
+            found.push(
+                Diagnostic::warning(codes::SHADOWED_IMPORT, message).at(place, "this one is used"),
+            );
+        }
+    }
+    let here = &loader.nodes[node as usize].module;
+    let is_shown = here.is_wildcardable && !is_off(loader, node, "builtin_shadow");
+    for item in module.items.iter().filter(|item| is_shown && item.kind != ItemKind::ConstAssert) {
+        let text = loader.names.text(item.name);
+        if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&text) {
+            let message = format!("`{text}` hides a built-in of WGSL where it is imported by `*`");
+            let place = here.span(item.name_range.clone());
+            found.push(
+                Diagnostic::warning(codes::BUILTIN_SHADOW, message).at(place, "declared here"),
+            );
         }
     }
     found
 }
 
-/// The name of the package that an import's path starts with, if there is no such package.
-fn absent_package<'l>(loader: &'l Loader<'_>, node: &ModuleNode, path: &Path) -> Option<&'l str> {
-    let is_there = |name: Name| {
-        let text = loader.names.text(name);
-        name == Name::CONSTANTS
-            || loader.packages.find(node.package, text).is_some()
-            || node.aliases.contains_key(&name)
-    };
-    let first = path.segments.first().copied().filter(|_| path.origin == Origin::Scope)?;
-    (!is_there(first)).then(|| loader.names.text(first))
-}
-
-/// Whether an import that leads nowhere is not an error: nothing uses it, and its package is not
-/// installed. The warning about unused imports covers that.
-pub fn is_harmless(loader: &mut Loader<'_>, node: u32, alias: Name, failure: u32) -> bool {
-    loader.failures[failure as usize].code == codes::UNKNOWN_PACKAGE && !loader.is_used(node, alias)
+/// Whether a `diagnostic(off, ...)` of the module names a rule.
+pub fn is_off(loader: &Loader<'_>, node: u32, rule: &str) -> bool {
+    let directives = &loader.nodes[node as usize].module.directives;
+    let mut filters = directives.iter().filter(|directive| directive.keyword == Name::DIAGNOSTIC);
+    filters.any(|filter| filter.names.iter().map(|name| loader.names.text(*name)).eq(["off", rule]))
 }
 
 /// Reports declarations of one name that the same settings keep, whether or not anything reaches
@@ -123,11 +143,39 @@ pub fn report_clashes(
             );
         }
     }
+    failures.extend(declared_imports(loader, node));
     for failure in failures {
         if let PathTarget::Failed(index) = loader.fail(failure) {
             loader.nodes[node as usize].broken_imports.push((Vec::new(), index));
         }
     }
+}
+
+/// Errors about imports of items that have the name of a declaration, where neither has a condition.
+/// Modules have a namespace of their own.
+fn declared_imports(loader: &Loader<'_>, node: u32) -> Vec<Diagnostic> {
+    let here = &loader.nodes[node as usize];
+    let mut found = Vec::new();
+    for (import, targets) in here.module.imports.iter().zip(here.imports.iter()) {
+        let brings = targets
+            .iter()
+            .any(|target| matches!(target, PathTarget::Items { .. } | PathTarget::Constant(_)));
+        let own = here.sets.get(&import.alias).and_then(|set| set.first());
+        let own = own.map(|index| &here.module.items[*index as usize]);
+        let is_certain = import.condition.is_none() && brings;
+        let Some(item) = own.filter(|item| is_certain && item.condition.is_none()) else {
+            continue;
+        };
+        let text = loader.names.text(import.alias);
+        let message = format!("`{text}` is both imported and declared");
+        found.push(
+            Diagnostic::error(codes::DUPLICATE_ITEM, message)
+                .at(here.module.span(import.alias_range.clone()), "imported here")
+                .at(here.module.span(item.name_range.clone()), "declared here")
+                .note("help: remove the import, or give it another name with `as`"),
+        );
+    }
+    found
 }
 
 /// Whether candidates lead to different things. Those that lead nowhere do not count.

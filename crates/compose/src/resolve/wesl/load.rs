@@ -8,16 +8,18 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::cache::{KeptModules, ParsedModule};
 use super::graph::{
-    Bases, Candidate, ConstantUse, Graph, Importer, ModuleNode, PathTarget, certain_errors,
+    Bases, Candidate, ConstantUse, Graph, Importer, ModuleNode, NodeCondition, PathTarget,
+    certain_errors,
 };
 use super::lint;
 use super::reduce::Reductions;
 use super::replay::LoadNotes;
+use super::wildcard::WildcardModule;
 use crate::resolve::Packages;
 use lamplight_diagnostic::source::{self, LIMITS, Package, SourceId, SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_files::limits::{RESOLVE_FACTOR, RESOLVE_STEPS, Steps};
-use lamplight_syntax::wesl::{self, ConditionId, Name, Names, Path, PlacedModule, UsedName};
+use lamplight_syntax::wesl::{self, Name, Names, PlacedModule, UsedName};
 
 /// The graph that is being built.
 pub struct Loader<'a> {
@@ -276,6 +278,7 @@ impl<'a> Loader<'a> {
             imports: Arc::default(),
             bindings: Arc::default(),
             broken_imports: Vec::new(),
+            passed: Vec::new(),
             duplicates: Vec::new(),
             lints: Vec::new(),
             importer,
@@ -339,38 +342,48 @@ impl<'a> Loader<'a> {
 
     /// Resolves a module's imports, then its uses.
     pub(super) fn resolve_anew(&mut self, node: u32) {
-        let imports: Vec<(Option<ConditionId>, Path, Name)> = self.nodes[node as usize]
-            .module
-            .imports
-            .iter()
-            .map(|import| (import.condition, import.path.clone(), import.alias))
-            .collect();
+        let imported = self.imported(node);
+        let wildcards = self.wildcards(node);
+        let references = self.nodes[node as usize].module.references.clone();
+        let binding = |reference| self.binding(node, reference, &imported, &wildcards);
+        let bindings = references.iter().map(binding).collect();
+        self.nodes[node as usize].bindings = Arc::new(bindings);
+        lint::report_clashes(self, node, &imported);
+        lint::report_duplicates(self, node);
+        let mut lints = lint::import_lints(self, &self.nodes[node as usize]);
+        lints.extend(lint::wildcard_lints(self, node, &wildcards));
+        self.nodes[node as usize].lints = lints;
+    }
+
+    /// What the imports of a module bring, by name.
+    fn imported(&mut self, node: u32) -> FxHashMap<Name, Vec<Candidate>> {
+        let module = self.nodes[node as usize].module.shared();
         let mut imported: FxHashMap<Name, Vec<Candidate>> = FxHashMap::default();
         let mut found = Vec::new();
-        for (index, (condition, path, alias)) in imports.iter().enumerate() {
+        for (index, import) in module.imports.iter().enumerate() {
+            let own = import.condition.map(|condition| NodeCondition { node, condition });
             let mut targets = Vec::new();
-            for mut candidate in self.candidates(node, path, Some(index)) {
-                candidate.conditions.extend(*condition);
+            for mut candidate in self.candidates(node, &import.path, Some(index)) {
+                candidate.conditions.extend(own);
+                if import.is_public {
+                    candidate = self.passed_candidate(node, import, candidate);
+                    self.nodes[node as usize].passed.push((import.alias, candidate.clone()));
+                }
                 targets.push(candidate.target);
                 if let PathTarget::Failed(failure) = candidate.target
-                    && !lint::is_harmless(self, node, *alias, failure)
+                    && (import.is_public
+                        || self.failures[failure as usize].code == codes::TOO_MANY_FILES
+                        || self.is_used(node, import.alias))
                 {
-                    self.nodes[node as usize]
-                        .broken_imports
-                        .push((candidate.conditions.clone(), failure));
+                    let broken = &mut self.nodes[node as usize].broken_imports;
+                    broken.push((candidate.conditions.clone(), failure));
                 }
-                imported.entry(*alias).or_default().push(candidate);
+                imported.entry(import.alias).or_default().push(candidate);
             }
             found.push(targets);
         }
         self.nodes[node as usize].imports = Arc::new(found);
-        let references = self.nodes[node as usize].module.references.clone();
-        let bindings =
-            references.iter().map(|reference| self.binding(node, reference, &imported)).collect();
-        self.nodes[node as usize].bindings = Arc::new(bindings);
-        lint::report_clashes(self, node, &imported);
-        lint::report_duplicates(self, node);
-        self.nodes[node as usize].lints = lint::import_lints(self, &self.nodes[node as usize]);
+        imported
     }
 
     fn binding(
@@ -378,6 +391,7 @@ impl<'a> Loader<'a> {
         node: u32,
         reference: &UsedName,
         imported: &FxHashMap<Name, Vec<Candidate>>,
+        wildcards: &[WildcardModule],
     ) -> Vec<Candidate> {
         match reference {
             UsedName::Path(path) => self.candidates(node, path, None),
@@ -386,11 +400,11 @@ impl<'a> Loader<'a> {
                     return Vec::new();
                 }
                 let own = self.nodes[node as usize].sets.contains_key(name);
-                let own = own.then(|| Candidate {
-                    conditions: Vec::new(),
-                    target: PathTarget::Items { node, name: *name },
-                });
-                own.into_iter().chain(imported.get(name).into_iter().flatten().cloned()).collect()
+                let own = own.then(|| Candidate::certain(PathTarget::Items { node, name: *name }));
+                let named = imported.get(name).into_iter().flatten().cloned();
+                let found: Vec<Candidate> = own.into_iter().chain(named).collect();
+                let brought = wildcards.iter().flat_map(|module| self.brought(node, module, *name));
+                found.into_iter().chain(brought).collect()
             }
         }
     }

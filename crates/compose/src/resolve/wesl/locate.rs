@@ -2,19 +2,19 @@
 
 use std::sync::Arc;
 
-use super::graph::{Candidate, ConstantUse, PathTarget};
+use super::graph::{Candidate, ConstantUse, NodeCondition, PathTarget};
 use super::load::Loader;
 use lamplight_diagnostic::source::{LIMITS, Span};
 use lamplight_diagnostic::{Diagnostic, codes};
-use lamplight_syntax::wesl::{ConditionId, Name, Origin, Path, PlacedModule};
+use lamplight_syntax::wesl::{Name, Origin, Path, PlacedModule};
 
 /// A path from a package's root.
 #[derive(Debug, Clone)]
-struct Absolute {
+pub(super) struct Absolute {
     /// `None` for the virtual package `constants`.
-    package: Option<usize>,
-    segments: Vec<Name>,
-    conditions: Vec<ConditionId>,
+    pub package: Option<usize>,
+    pub segments: Vec<Name>,
+    pub conditions: Vec<NodeCondition>,
 }
 
 /// The most meanings that one path may have under different conditions.
@@ -31,6 +31,17 @@ struct PathPlaces {
     /// All names but the last; the whole path if these are not written in one piece.
     parents: Span,
     last: Span,
+}
+
+/// Where a path is used.
+#[derive(Debug, Clone, Copy)]
+struct PathUse {
+    node: u32,
+    places: PathPlaces,
+    /// Whether it is the path of an import, which may name a module.
+    is_import: bool,
+    /// How many `public import` statements led to it.
+    depth: usize,
 }
 
 impl PathPlaces {
@@ -56,25 +67,38 @@ impl Loader<'_> {
         path: &Path,
         import: Option<usize>,
     ) -> Vec<Candidate> {
+        self.candidates_within(node, path, import, 0)
+    }
+
+    /// As [`Self::candidates`], below so many `public import` statements that led to the module.
+    pub(super) fn candidates_within(
+        &mut self,
+        node: u32,
+        path: &Path,
+        import: Option<usize>,
+        depth: usize,
+    ) -> Vec<Candidate> {
         if !self.step(1) {
             return Vec::new();
         }
         let places = PathPlaces::new(&self.nodes[node as usize].module, path);
         let mut visiting: Vec<usize> = import.into_iter().collect();
         let found = self.absolute(node, path, &mut visiting).and_then(|absolutes| {
-            let candidate = |absolute: Absolute| {
-                let target = self.target(&absolute, places, import.is_some())?;
-                Ok(Candidate { conditions: absolute.conditions, target })
-            };
-            absolutes.into_iter().map(candidate).collect()
+            let mut found = Vec::new();
+            for absolute in absolutes {
+                let place = PathUse { node, places, is_import: import.is_some(), depth };
+                for mut candidate in self.targets(&absolute, place)? {
+                    candidate.conditions.extend(&absolute.conditions);
+                    found.push(candidate);
+                }
+            }
+            Ok(found)
         });
-        found.unwrap_or_else(|error| {
-            vec![Candidate { conditions: Vec::new(), target: self.fail(error) }]
-        })
+        found.unwrap_or_else(|error| vec![Candidate::certain(self.fail(error))])
     }
 
     /// The path from a package's root, for each import that its first segment may mean.
-    fn absolute(
+    pub(super) fn absolute(
         &self,
         node: u32,
         path: &Path,
@@ -137,7 +161,8 @@ impl Loader<'_> {
                 return Err(cyclic_import(module.span(path.range.clone())));
             }
             for mut absolute in self.absolute(node, &import.path, visiting)? {
-                absolute.conditions.extend(import.condition);
+                let own = import.condition;
+                absolute.conditions.extend(own.map(|condition| NodeCondition { node, condition }));
                 absolute.segments.extend(&path.segments[1..]);
                 found.push(absolute);
             }
@@ -213,27 +238,28 @@ impl Loader<'_> {
         error.suggest(first, known.chain(["package", "super"]))
     }
 
-    fn target(
+    fn targets(
         &mut self,
         absolute: &Absolute,
-        places: PathPlaces,
-        import: bool,
-    ) -> Result<PathTarget, Diagnostic> {
-        let span = places.whole;
+        place: PathUse,
+    ) -> Result<Vec<Candidate>, Diagnostic> {
+        let (places, span) = (place.places, place.places.whole);
         let Some(package) = absolute.package else {
-            return Ok(self.constant(&absolute.segments, span));
+            return Ok(vec![Candidate::certain(self.constant(&absolute.segments, span))]);
         };
         let Some((last, parents)) = absolute.segments.split_last() else {
-            return Ok(PathTarget::Module);
+            return Ok(vec![Candidate::certain(PathTarget::Module)]);
         };
         let parent = self.ask_module(package, parents, span)?;
-        if let Some(node) = parent.filter(|node| self.nodes[*node as usize].sets.contains_key(last))
-        {
-            return Ok(PathTarget::Items { node, name: *last });
+        if let Some(there) = parent {
+            let found = self.items(there, *last, place)?;
+            if !found.is_empty() {
+                return Ok(found);
+            }
+            self.notes.lacks.push((there, *last));
         }
-        self.notes.lacks.extend(parent.map(|node| (node, *last)));
-        if self.is_module(package, &absolute.segments, span, import)? {
-            return Ok(PathTarget::Module);
+        if self.is_module(package, &absolute.segments, span, place.is_import)? {
+            return Ok(vec![Candidate::certain(PathTarget::Module)]);
         }
         Err(match parent {
             // The missing item may be in the part of the module that could not be parsed.
@@ -247,6 +273,26 @@ impl Loader<'_> {
             }
             None => self.missing_module(package, parents, places.parents),
         })
+    }
+
+    /// What a name means in a module that a path leads to: what it declares, and what it passes on.
+    fn items(
+        &mut self,
+        there: u32,
+        name: Name,
+        place: PathUse,
+    ) -> Result<Vec<Candidate>, Diagnostic> {
+        let [here, other] = [place.node, there].map(|node| &self.nodes[node as usize]);
+        let mut found = Vec::new();
+        if let Some(first) = other.sets.get(&name).and_then(|set| set.first()) {
+            if !other.shows_name(name, here) {
+                let item = &other.module.items[*first as usize];
+                return Err(other.not_visible(&self.names, item, place.places.last));
+            }
+            found.push(Candidate::certain(PathTarget::Items { node: there, name }));
+        }
+        found.extend(self.passed_on(there, name, place.depth));
+        Ok(found)
     }
 
     fn constant(&mut self, segments: &[Name], span: Span) -> PathTarget {
@@ -301,7 +347,7 @@ impl Loader<'_> {
         .at(span, "not found");
         let imports = here.module.imports.iter().any(|import| import.alias == name);
         let error = if imports {
-            error.note("it imports that name, but imports are not passed on")
+            error.note("it imports that name, but only a `public import` passes it on")
         } else {
             error
         };
@@ -312,7 +358,12 @@ impl Loader<'_> {
         )
     }
 
-    fn missing_module(&mut self, package: usize, path: &[Name], span: Span) -> Diagnostic {
+    pub(super) fn missing_module(
+        &mut self,
+        package: usize,
+        path: &[Name],
+        span: Span,
+    ) -> Diagnostic {
         let path: Vec<String> = path.iter().map(|name| self.names.text(*name).to_owned()).collect();
         let label = self.label(package, &path);
         let shown = self.package(package).files.display(&path.join("/"));

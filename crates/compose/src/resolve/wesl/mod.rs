@@ -8,9 +8,10 @@ mod load;
 mod locate;
 mod reduce;
 mod replay;
+mod wildcard;
 
 pub use cache::KeptModules;
-pub use graph::{Candidate, ConstantUse, Graph, ModuleNode, PathTarget};
+pub use graph::{Candidate, ConstantUse, Graph, ModuleNode, NodeCondition, PathTarget};
 pub use lint::{PLACES, flag_places, shown_at, undeclared_flags};
 pub use reduce::Reductions;
 

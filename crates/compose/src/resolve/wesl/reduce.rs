@@ -98,7 +98,7 @@ fn reduced_text(source: SourceId, text: Arc<str>) -> (Option<Arc<str>>, usize) {
     let imports = module.imports.len();
     let is_conditional = module.imports.iter().any(|import| import.condition.is_some())
         || module.directives.iter().any(|directive| directive.condition.is_some());
-    if is_conditional || module.has_errors() {
+    if is_conditional || module.has_errors() || !module.wildcards.is_empty() {
         return (None, imports);
     }
     let mut items = String::new();
@@ -171,8 +171,10 @@ fn needed_imports(module: &Module, used: FxHashSet<Name>) -> impl Iterator<Item 
     for (index, import) in module.imports.iter().enumerate() {
         aliases.entry(import.alias).or_default().push(index);
     }
-    let mut needed = vec![false; module.imports.len()];
-    let mut open: Vec<Name> = used.into_iter().collect();
+    let mut needed: Vec<bool> = module.imports.iter().map(|import| import.is_public).collect();
+    let passed = module.imports.iter().filter(|import| import.is_public);
+    let starts = passed.filter_map(|import| import.path.segments.first().copied());
+    let mut open: Vec<Name> = used.into_iter().chain(starts).collect();
     while let Some(name) = open.pop() {
         for index in aliases.get(&name).into_iter().flatten() {
             if !std::mem::replace(&mut needed[*index], true) {
@@ -195,5 +197,6 @@ fn written_import(import: &Import, names: &Names) -> String {
     let alias = names.text(import.alias);
     let renamed = segments.last().is_some_and(|last| *last != alias);
     let renamed = if renamed { format!(" as {alias}") } else { String::new() };
-    format!("import {first}{}{renamed};\n", segments.join("::"))
+    let public = if import.is_public { "public " } else { "" };
+    format!("{public}import {first}{}{renamed};\n", segments.join("::"))
 }

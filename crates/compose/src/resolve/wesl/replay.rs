@@ -107,6 +107,7 @@ impl Loader<'_> {
             && notes.failures == self.failures.len()
             && here.lints.is_empty()
             && here.broken_imports.is_empty()
+            && here.passed.is_empty()
             && here.duplicates.is_empty();
         let bound = here.bindings.iter().flatten().map(|candidate| candidate.target);
         let mut items = Vec::new();
@@ -146,10 +147,24 @@ impl Loader<'_> {
                 _ => return false,
             }
         }
-        let has = |(other, name): &(u32, Name)| {
-            self.nodes.get(*other as usize).is_some_and(|node| node.sets.contains_key(name))
+        let here = &self.nodes[node as usize];
+        let shows = |(other, name): &(u32, Name)| {
+            self.nodes.get(*other as usize).is_some_and(|node| node.shows_name(*name, here))
         };
-        if !known.items.iter().all(has) || known.lacks.iter().any(has) {
+        let has = |(other, name): &(u32, Name)| {
+            self.nodes.get(*other as usize).is_some_and(|node| {
+                let passes = |index: &usize| node.module.imports[*index].is_public;
+                node.sets.contains_key(name)
+                    || node.aliases.get(name).into_iter().flatten().any(passes)
+            })
+        };
+        let is_passed = |(other, name): &(u32, Name)| {
+            !self.nodes.get(*other as usize).is_some_and(|node| node.sets.contains_key(name))
+        };
+        if !known.items.iter().all(shows)
+            || known.items.iter().any(is_passed)
+            || known.lacks.iter().any(has)
+        {
             return false;
         }
         // The steps count as if the module were resolved anew, so what is kept does not affect

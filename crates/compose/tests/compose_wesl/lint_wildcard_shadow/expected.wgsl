@@ -1,0 +1,8 @@
+// package::more
+
+fn g() {}
+
+// package::main
+
+fn f() { g(); }
+fn sin() { f(); }

@@ -1,0 +1,7 @@
+// older::m
+
+fn plain() {}
+
+// package::main
+
+fn main() { plain(); }

@@ -1,0 +1,7 @@
+// package::b
+
+fn g() {}
+
+// package::main
+
+fn main() { g(); }

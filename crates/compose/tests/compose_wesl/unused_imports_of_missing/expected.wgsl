@@ -1,0 +1,7 @@
+// package::ok
+
+fn y() {}
+
+// package::main
+
+fn main() { y(); }

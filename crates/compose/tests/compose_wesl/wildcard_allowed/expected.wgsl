@@ -1,0 +1,7 @@
+// lib::m
+
+fn f() {}
+
+// package::main
+
+fn main() { f(); }

@@ -1,0 +1,7 @@
+// package::b
+
+fn f() {}
+
+// package::main
+
+fn main() { f(); }
