@@ -36,9 +36,11 @@ use lamplight::picture::{Linear, Picture, Plan, PreparedPass, Shot, Surroundings
 use libtest_mimic::{Failed, Trial};
 
 use crate::fragments::{self, Tally, Watched};
+use crate::is_whole;
 pub use pages::gallery_cards;
 
-/// The drivers. Each draws in another language, so that both languages are drawn.
+/// The drivers. Each draws in another language, so that both languages are drawn. By day, a preset is
+/// drawn by one of them, in turn.
 const BACKENDS: [(&str, Language); 2] = [("vulkan", Language::Wesl), ("gl", Language::Glsl)];
 /// The folder of the reviewed pictures. They are small, so that drawing them is quick.
 const REVIEWED: &str = "tests/render/reviewed";
@@ -55,14 +57,16 @@ const OPEN: f64 = 0.05;
 
 pub fn tests() -> Vec<Trial> {
     let library = library();
-    let on_each = |preset: &'static Preset| {
-        BACKENDS.map(|(backend, language)| {
+    let on_each = |(index, preset): (usize, &'static Preset)| {
+        let backends = BACKENDS.into_iter().enumerate();
+        let drawn = backends.filter(move |(turn, _)| is_whole() || index % BACKENDS.len() == *turn);
+        drawn.map(move |(_, (backend, language))| {
             Trial::test(format!("render/{}/{backend}", preset.name), move || {
                 on_device(backend, |painter| shown(painter, preset, language, backend))
             })
         })
     };
-    let presets = library.presets.iter().flat_map(on_each);
+    let presets = library.presets.iter().enumerate().flat_map(on_each);
     let forms = closed_forms::FORMS
         .iter()
         .chain(shadows::FORMS)

@@ -21,13 +21,14 @@ use libtest_mimic::{Failed, Trial};
 
 use super::{PROGRAMS, Scene, Sources, bundle, most_open, points};
 use crate::fragments::{self, Tally, Watched};
+use crate::is_whole;
 
 /// The number of permutations of each language. All pairs of values are among them.
 const LEAST_POINTS: usize = 200;
-/// How many of them the tests draw. `cargo xtask frames` draws all.
-const DRAWN_POINTS: usize = 12;
+/// How many of them the tests draw by day, and at night. `cargo xtask frames` draws all.
+const DRAWN_POINTS: [usize; 2] = [8, 12];
 /// How many of programs that are smaller than `forward`.
-const DRAWN_OF_SMALL: usize = 4;
+const DRAWN_OF_SMALL: [usize; 2] = [3, 4];
 /// The size of a frame in pixels.
 pub const SIZE: [u32; 2] = [96, 48];
 /// Every 29th quad is computed again.
@@ -89,7 +90,8 @@ pub fn most_points(usual: usize) -> Result<usize, String> {
 fn drawn(program: &'static str, language: Language) -> Result<(), String> {
     let (targets, sources) = (targets()?, Sources::load(program, language)?);
     let mut points = points(&sources.space, LEAST_POINTS);
-    points.truncate(most_points(if program == "forward" { DRAWN_POINTS } else { DRAWN_OF_SMALL })?);
+    let drawn = if program == "forward" { DRAWN_POINTS } else { DRAWN_OF_SMALL };
+    points.truncate(most_points(drawn[usize::from(is_whole())])?);
     let start = Instant::now();
     let bundle = bundle(&sources, &points, &targets)?;
     let mut drivers = drivers(&targets)?;

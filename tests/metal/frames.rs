@@ -15,13 +15,14 @@ use naga::{Binding, BuiltIn};
 
 use crate::fragments::{self, Tally, Watched, entry_function};
 use crate::frames::{LISTINGS, PROGRAMS, Scene, Sources, bundle, most_open, most_points, points};
+use crate::is_whole;
 
 /// The number of permutations of `forward` in each language. All pairs of values are among them, as
 /// they are of the other programs.
 const LEAST_POINTS: usize = 200;
-/// How many permutations of each program and language the tests draw. `cargo xtask frames` draws
-/// all.
-const DRAWN_POINTS: usize = 64;
+/// How many permutations of each program and language the tests draw by day, and at night. `cargo
+/// xtask frames` draws all.
+const DRAWN_POINTS: [usize; 2] = [24, 64];
 /// The size of a frame in pixels.
 const SIZE: [u32; 2] = [128, 64];
 /// Every 29th quad is computed again. The objects of the listings are small, so there it is every
@@ -48,7 +49,7 @@ pub fn tests() -> Vec<Trial> {
 fn drawn(program: &'static str, language: Language) -> Result<(), String> {
     let sources = Sources::load(program, language)?;
     let mut points = points(&sources.space, if program == "forward" { LEAST_POINTS } else { 1 });
-    points.truncate(most_points(DRAWN_POINTS)?);
+    points.truncate(most_points(DRAWN_POINTS[usize::from(is_whole())])?);
     let bundle = bundle(&sources, &points, &[Target::MSL])?;
     let (mut total, mut failures) = (Tally::default(), Vec::new());
     let step = if program == LISTINGS { STEP_OF_LISTINGS } else { STEP };
