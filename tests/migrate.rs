@@ -21,6 +21,8 @@ type Run = fn() -> Outcome;
 
 const TESTS: &[(&str, Run)] = &[
     ("text", text),
+    ("addresses", addresses),
+    ("blocks", blocks),
     ("same_modules", same_modules),
     ("mutants", mutants),
     ("next_to_originals", next_to_originals),
@@ -77,6 +79,44 @@ fn text() -> Outcome {
         text += &format!("\n=== {path}\n{file}");
     }
     snapshot::check("migrate", "engine", &text)
+}
+
+/// Files that are imported by the address that they have in Bevy; the slashes begin no comment.
+fn addresses() -> Outcome {
+    let main = "#import \"embedded://lib/u.wgsl\"::foo // why\n#import \"w.wgsl\" as w\n\
+                fn fs() -> f32 { return foo() + w::bar(); }\n";
+    let files = [
+        ("main.wgsl", main),
+        ("src/lib/u.wgsl", "fn foo() -> f32 { return 1.0; }\n"),
+        ("w.wgsl", "fn bar() -> f32 { return 1.0; }\n"),
+    ];
+    let found = migrated(&files.map(|(path, text)| (path.to_owned(), text.to_owned())).into());
+    let expected = "import package::src::lib::u::foo; // why\nimport package::w;\n\
+                    fn fs() -> f32 { return foo() + w::bar(); }\n";
+    match found.files.get("main.wgsl") {
+        Some(text) if text == expected && found.diagnostics.is_empty() => Ok(()),
+        text => Err(format!("{text:?}, {:?}", found.diagnostics).into()),
+    }
+}
+
+/// `wesl` 0.4, which Bevy has, reads no braces around declarations under a condition, and ends the
+/// scope of locals at braces around statements.
+fn blocks() -> Outcome {
+    let main = "#ifdef A\nconst X = 1.0;\nconst Y = 2.0;\n#else\nconst X = 3.0;\n#endif\n\
+                fn f() -> f32 {\n    var sum = X;\n#ifdef A\n    sum += Y;\n    sum *= 2.0;\n#endif\n\
+                #ifdef A\n#ifdef B\n    let k = 1.0;\n    sum += k;\n#else\n    let k = 2.0;\n#endif\n    \
+                sum -= k;\n#endif\n    return sum;\n}\n";
+    let found = migrated(&[("main.wgsl".to_owned(), main.to_owned())].into());
+    let expected = "@if(A) const X = 1.0;\n@if(A) const Y = 2.0;\n@if(!A) const X = 3.0;\n\
+                    fn f() -> f32 {\n    var sum = X;\n@if(A) {\n    sum += Y;\n    sum *= 2.0;\n}\n    \
+                    @if(A && B) let k = 1.0;\n    @if(A && B) sum += k;\n    \
+                    @if(A && !B) let k = 2.0;\n    @if(A) sum -= k;\n    return sum;\n}\n";
+    match found.files.get("main.wgsl") {
+        Some(text) if text == expected => Ok(()),
+        text => {
+            Err(format!("{}\n{:?}", text.cloned().unwrap_or_default(), found.diagnostics).into())
+        }
+    }
 }
 
 /// Every choice of shader defs gives the module that `naga_oil` composes from the original files.

@@ -182,6 +182,15 @@ pub fn rename_symbol(
         if let Some(taken) = name_taken_in(package, &new) {
             return Err(format!("`{new}` is already declared in `{taken}`").into());
         }
+        if let Some(place) = package.modules.divided_place(package.symbol) {
+            let source = package.modules.sources.get(place.source);
+            let line = source.text[..place.start as usize].matches('\n').count() + 1;
+            let message = format!(
+                "under other conditions, `{old}` is something else in {}:{line}",
+                source.path
+            );
+            return Err(message.into());
+        }
     }
     let places = shared.packages.iter().flat_map(|package| {
         let sources = &package.modules.sources;

@@ -252,6 +252,27 @@ impl PackageModules {
         found
     }
 
+    /// A place that names the symbol under some conditions, and something else under others.
+    pub fn divided_place(&self, symbol: WeslSymbol) -> Option<Span> {
+        self.graph.nodes.iter().enumerate().find_map(|(index, here)| {
+            let locals: BTreeMap<u32, u32> =
+                here.module.local_uses.iter().map(|found| (found.start, found.declared)).collect();
+            let events = here.module.items.iter().flat_map(|item| &item.events);
+            events.clone().find_map(|event| {
+                let Event::Use { reference, start, end, .. } = *event else { return None };
+                let local = locals
+                    .get(&start)
+                    .map(|declared| WeslSymbol::Local { node: index as u32, declared: *declared });
+                let candidates = here.bindings.get(reference as usize)?.iter();
+                let global = candidates.filter_map(|candidate| symbol_of(candidate.target));
+                let meanings: Vec<WeslSymbol> = local.into_iter().chain(global).collect();
+                let is_divided =
+                    meanings.contains(&symbol) && meanings.iter().any(|meaning| *meaning != symbol);
+                is_divided.then(|| here.module.span(start..end))
+            })
+        })
+    }
+
     /// The item of a symbol that is declared first.
     pub fn item(&self, symbol: WeslSymbol) -> Option<(&ModuleNode, &Item)> {
         let WeslSymbol::Items { node, name } = symbol else { return None };

@@ -14,7 +14,27 @@ pub fn tests() -> Vec<Trial> {
         Trial::test("lsp::rename_across_packages", rename_across_packages),
         Trial::test("lsp::rename_that_would_break", rename_that_would_break),
         Trial::test("lsp::rename_of_glsl_across_packages", rename_of_glsl),
+        Trial::test("lsp::rename_under_conditions", rename_under_conditions),
     ]
+}
+
+/// A name that is an import under one condition, and a local under another: to rename either one
+/// would change what the other means, so both are refused. Other names of the file are renamed.
+fn rename_under_conditions() -> Result<(), Failed> {
+    let main = "import package::k::{a, b};\nfn f() -> f32 {\n    @if(c) let a = 7.0;\n    \
+                let sum = a + b;\n    return sum;\n}\n";
+    let files = [
+        ("wesl.toml", "[package]\nname = \"one\"\nroot = \".\"\n"),
+        ("main.wesl", main),
+        ("k.wesl", "const a = 1.0;\nconst b = 2.0;\n"),
+    ];
+    for words in ["a = 7.0", "a + b", "a, b}"] {
+        let refused = rename(&mut Editor::new(&files)?, "main.wesl", words, "q")?;
+        let reason = refused.as_ref().err().map(String::as_str).unwrap_or_default();
+        expect(reason.contains("under other conditions"), &(words, &refused))?;
+    }
+    let renamed = rename(&mut Editor::new(&files)?, "main.wesl", "b;", "q")?;
+    expect(renamed.is_ok(), &renamed)
 }
 
 const LIB: &str = "[package]\nname = \"lib\"\nedition = \"2026_pre\"\nroot = \"src\"\n";

@@ -102,6 +102,8 @@ impl FolderModules {
     pub fn place(&self, path: &[String]) -> Result<PathDestination, String> {
         if let Some(file) = path.first().and_then(|first| first.strip_prefix('"')) {
             let file = file.trim_end_matches('"');
+            // Bevy's address of a file that a crate carries.
+            let file = file.split_once("://").map_or(file, |(_, path)| path);
             let fits = |known: &&String| *known == file || known.ends_with(&format!("/{file}"));
             let Some(known) = self.files.keys().find(fits) else {
                 return Err(format!("there is no file `{file}`"));

@@ -241,21 +241,31 @@ impl Writer<'_> {
     }
 
     fn choice(&mut self, level: UnitKind, chosen: &Choice<'_>, around: &[ShaderDefTest]) {
-        let of_imports = chosen.written.is_some_and(Conditional::is_of_imports);
+        let is_block =
+            level == UnitKind::Statements && around.is_empty() && !self.declares_locals(chosen);
         match chosen.written {
-            Some(choice) if level.has_blocks() && !of_imports => self.blocks(level, chosen, choice),
+            Some(choice) if is_block => self.blocks(level, chosen, choice),
             Some(choice) => self.one_by_one(level, chosen, Some(choice), around),
             None if level.has_blocks() => self.variants(level, chosen),
             None => self.one_by_one(level, chosen, None, around),
         }
     }
 
-    /// `@if(...) {` in place of `#ifdef`.
+    /// Whether a branch declares a local outside of braces. Composers do not agree whether it is in
+    /// scope behind braces under a condition, so these are not written around it.
+    fn declares_locals(&self, chosen: &Choice<'_>) -> bool {
+        let declares = |element: &Element<'_>| match element {
+            Element::Unit(parts) => matches!(parts.first(), Some(UnitPart::Token(first))
+                if ["let", "var", "const"].contains(&&self.text[first.range.clone()])),
+            Element::Choice(inner) => self.declares_locals(inner),
+            Element::Import(_) | Element::Comment(_) | Element::Gone(_) => false,
+        };
+        chosen.branches.iter().any(|(_, elements)| elements.iter().any(declares))
+    }
+
+    /// `@if(...) {` in place of `#ifdef`, around statements: `wesl` 0.4 does not read it around
+    /// declarations.
     fn blocks(&mut self, level: UnitKind, chosen: &Choice<'_>, choice: &Conditional) {
-        if level == UnitKind::Declarations && !self.declared {
-            self.declared = true;
-            self.imports_at.get_or_insert(self.out.len());
-        }
         for (index, (branch, (_, elements))) in
             choice.branches.iter().zip(&chosen.branches).enumerate()
         {
