@@ -104,7 +104,8 @@ fn diagnostics() -> Outcome {
     session.change(&MAIN.replace("fs_main(", "fs_main"))?;
     let syntax = session.diagnostics("main.wesl")?;
     expect(codes(&syntax).contains(&"unbalanced-bracket"), &syntax)?;
-    session.change(&format!("import package::util::nothing;\n{MAIN}"))?;
+    let used = MAIN.replace("vec4f(sum)", "vec4f(nothing)");
+    session.change(&format!("import package::util::nothing;\n{used}"))?;
     let missing = session.diagnostics("main.wesl")?;
     expect(codes(&missing).contains(&"missing-item"), &missing)?;
     let uri = session.uri("main.wesl")?;

@@ -112,8 +112,9 @@ fn use_order(constants: &[SizedConstant<'_>], globals: &HashMap<&str, usize>) ->
     order
 }
 
-/// Every constant of a text. Its name is the last word before the `=` that is outside of brackets,
-/// in both languages. Comments are not skipped, which can only make the count larger.
+/// Every constant of a text. Its name is the first word in WGSL, where a type may follow it, and in
+/// GLSL the last word before the `=` that is outside of brackets. Comments are not skipped, which can
+/// only make the count larger.
 fn find_constants(text: &str, language: Language) -> Vec<SizedConstant<'_>> {
     let mut found: Vec<SizedConstant<'_>> = Vec::new();
     let (mut depth, mut open, mut start) = (0usize, None::<SizedConstant<'_>>, 0usize);
@@ -141,12 +142,14 @@ fn find_constants(text: &str, language: Language) -> Vec<SizedConstant<'_>> {
             }
             // In GLSL a parameter can be `const` too. It ends with the list of parameters.
             (")" | "}", Some(_)) if here == 0 => open = None,
-            ("," | "{", Some(_)) if here == 0 && !in_value => open = None,
+            // In WGSL it may be in a type: `array<f32, 2>`.
+            (",", Some(_)) if here == 0 && !in_value && language == Language::Glsl => open = None,
+            ("{", Some(_)) if here == 0 && !in_value => open = None,
             (word, Some(constant)) if matches!(kind, LexemeKind::Word | LexemeKind::Number) => {
                 if in_value {
                     constant.own += 1;
                     constant.uses.push(word);
-                } else if here == 0 {
+                } else if here == 0 && (language == Language::Glsl || constant.name.is_empty()) {
                     constant.name = word;
                 }
             }
@@ -161,4 +164,34 @@ fn find_constants(text: &str, language: Language) -> Vec<SizedConstant<'_>> {
     }
     found.retain(|constant| !constant.name.is_empty());
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(text: &str, language: Language) -> Vec<&str> {
+        find_constants(text, language).iter().map(|constant| constant.name).collect()
+    }
+
+    #[test]
+    fn types_are_no_names() {
+        let wgsl = "const a: vec2<f32> = vec2<f32>(1f); const b: array<f32, 2> = c; const d = a;";
+        assert_eq!(names(wgsl, Language::Wesl), ["a", "b", "d"]);
+        let glsl = "const vec2 a[2] = vec2[2](b, b), c[] = a; void f(const int d, int e) {}";
+        assert_eq!(names(glsl, Language::Glsl), ["a", "c"]);
+    }
+
+    /// Constants of one type do not name each other.
+    #[test]
+    fn many_constants_of_a_type() {
+        let line = |at: usize| format!("const a{at}: mat2x2<f32> = mat2x2<f32>(1f, 2f, 3f, 4f);\n");
+        let text: String = (0..1000).map(line).collect();
+        assert!(scan_constants(&text, Language::Wesl, 1).is_none());
+        let chain = |at: usize| format!("const a{}: f32 = a{at} + a{at};\n", at + 1);
+        let text: String = (0..40).map(chain).collect();
+        assert!(
+            scan_constants(&format!("const a0: f32 = 1.0;\n{text}"), Language::Wesl, 1).is_some()
+        );
+    }
 }

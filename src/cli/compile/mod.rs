@@ -177,7 +177,9 @@ fn is_of_target(error: &Diagnostic) -> bool {
     [
         codes::EMIT_FAILED,
         codes::NOT_PORTABLE,
+        codes::BROWSERS_REFUSE,
         codes::NON_UNIFORM_BARRIER,
+        codes::NON_UNIFORM_DERIVATIVE,
         codes::OVERRIDE_WITHOUT_VALUE,
     ]
     .contains(&error.code)

@@ -6,6 +6,7 @@ mod cts;
 mod folder;
 mod glsl;
 mod table;
+mod wesl;
 
 use std::path::{Path, PathBuf};
 
@@ -33,21 +34,25 @@ pub struct Program {
 enum Suite {
     /// gpuweb's CTS, of which the shader validation tests are run.
     Cts,
+    /// The suite for composers of WESL.
+    Wesl,
     /// Shaders in WGSL, of which Tint says whether they are valid.
     Folder,
 }
 
 impl Suite {
     fn of(folder: &Path) -> Self {
-        match folder.join("src/webgpu/shader/validation").is_dir() {
-            true => Self::Cts,
-            false => Self::Folder,
+        match () {
+            () if folder.join("src/webgpu/shader/validation").is_dir() => Self::Cts,
+            () if folder.join(wesl::CASES).is_dir() => Self::Wesl,
+            () => Self::Folder,
         }
     }
 
     fn name(&self) -> &'static str {
         match self {
             Self::Cts => "cts",
+            Self::Wesl => "wesl",
             Self::Folder => "folder",
         }
     }
@@ -74,12 +79,12 @@ pub fn run(arguments: &[String]) -> CommandResult {
     for folder in folders {
         let folder = PathBuf::from(folder);
         let suite = Suite::of(&folder);
-        let programs = match suite {
-            Suite::Cts => cts::programs(&folder)?,
-            Suite::Folder => folder::programs(&folder)?,
+        let table = match suite {
+            Suite::Cts => tabulate(&cts::programs(&folder)?),
+            Suite::Wesl => wesl::tabulate(&folder)?,
+            Suite::Folder => tabulate(&folder::programs(&folder)?),
         };
-        let table = tabulate(&programs);
-        println!("{}: {}", folder.display(), programs.len());
+        println!("{}: {}", folder.display(), table.programs());
         print!("{table}");
         if !flags.is_empty() {
             print!("{}", table.listed());

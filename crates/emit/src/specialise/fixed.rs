@@ -1,4 +1,4 @@
-//! Overrides that decide a size, or the default of another override.
+//! Overrides that decide a size, the default of another override, or the initial value of a variable.
 //!
 //! In WGSL the host may choose them too. The other languages, as naga writes them, have a number
 //! for the size of a workgroup and for the length of an array, and a number for the default of
@@ -11,8 +11,8 @@ use naga::back::pipeline_constants::{PipelineConstantError, process_overrides};
 use naga::compact::{KeepUnused, compact};
 use naga::valid::ModuleInfo;
 use naga::{
-    ArraySize, EntryPoint, Expression, Function, Handle, Literal, Module, Override, Span, Type,
-    TypeInner,
+    ArraySize, EntryPoint, Expression, Function, GlobalVariable, Handle, Literal, Module, Override,
+    Span, Type, TypeInner,
 };
 
 use super::literal_of;
@@ -45,6 +45,8 @@ pub fn deciding(module: &Module) -> Overrides {
     }
     let computed = module.overrides.iter().filter(|(_, one)| is_computed(module, one));
     found.extend(computed.map(|(handle, _)| handle));
+    let values = module.global_variables.iter().filter_map(|(_, variable)| variable.init);
+    values.for_each(|value| collect_named(module, value, &mut found));
     with_named(module, found)
 }
 
@@ -134,16 +136,7 @@ pub fn default_values(validated: &Validated, index: usize) -> Result<DefaultValu
     if let Some(missing) = needed.intersection(&without).next() {
         return Err(missing_value(shown_name(module, *missing), "the size of a workgroup"));
     }
-    let mut named = module.clone();
-    for (handle, found) in named.overrides.iter_mut() {
-        (found.name, found.id) = (Some(number_name(handle)), None);
-    }
-    // naga computes nothing while a value is missing. What depends on these is left out below.
-    let assumed = without.iter().map(|handle| (number_name(*handle), 1.0));
-    let assumed: PipelineConstants = assumed.collect();
-    let entry = Some((point.stage, point.name.as_str()));
-    let (made, _) = process_overrides(&named, &validated.info, entry, &assumed)
-        .map_err(|error| Diagnostic::error(codes::EMIT_FAILED, reason(&error)))?;
+    let made = module_of_defaults(validated, point, &without)?;
     let computed: BTreeMap<&str, Literal> = made
         .overrides
         .iter()
@@ -158,6 +151,110 @@ pub fn default_values(validated: &Validated, index: usize) -> Result<DefaultValu
         all => all.get(index).map_or(point.workgroup_size, |one| one.workgroup_size),
     };
     Ok(DefaultValues { values: values.collect(), workgroup_size })
+}
+
+/// The module of an entry point with the values of all overrides. Those without a value are 1: naga
+/// computes nothing while one is missing.
+fn module_of_defaults(
+    validated: &Validated,
+    point: &EntryPoint,
+    without: &Overrides,
+) -> Result<Module, Diagnostic> {
+    let mut named = validated.module.clone();
+    for (handle, found) in named.overrides.iter_mut() {
+        (found.name, found.id) = (Some(number_name(handle)), None);
+    }
+    for (handle, found) in named.global_variables.iter_mut() {
+        found.name = Some(variable_name(handle));
+    }
+    let assumed: PipelineConstants =
+        without.iter().map(|handle| (number_name(*handle), 1.0)).collect();
+    let entry = Some((point.stage, point.name.as_str()));
+    let (made, _) = process_overrides(&named, &validated.info, entry, &assumed)
+        .map_err(|error| Diagnostic::error(codes::EMIT_FAILED, reason(&error)))?;
+    Ok(made.into_owned())
+}
+
+/// A name that leads back to the variable.
+fn variable_name(handle: Handle<GlobalVariable>) -> String {
+    format!("lamplight_variable_{}", handle.index())
+}
+
+/// Gives the variables whose initial values are computed from overrides those values.
+fn put_initial_values(
+    validated: &Validated,
+    module: &mut Module,
+    point: &EntryPoint,
+) -> Result<(), Diagnostic> {
+    let computed = |variable: &GlobalVariable| {
+        let named = variable.init.map(|init| {
+            let mut named = Overrides::new();
+            collect_named(&validated.module, init, &mut named);
+            with_named(&validated.module, named)
+        });
+        named.filter(|named| !named.is_empty())
+    };
+    let all = validated.module.global_variables.iter();
+    let open: Vec<_> = all.filter_map(|(handle, one)| Some((handle, computed(one)?))).collect();
+    if open.is_empty() {
+        return Ok(());
+    }
+    let is_missing = |handle: &Handle<Override>| validated.module.overrides[*handle].init.is_none();
+    let without: Overrides = validated.module.overrides.iter().map(|(handle, _)| handle).collect();
+    let without: Overrides = without.into_iter().filter(|handle| is_missing(handle)).collect();
+    let made = module_of_defaults(validated, point, &without)?;
+    for (handle, named) in open {
+        if let Some(missing) = named.intersection(&without).next() {
+            let name = shown_name(&validated.module, *missing);
+            return Err(missing_value(name, "the initial value of a variable"));
+        }
+        let name = variable_name(handle);
+        // naga leaves out the variables that the entry point does not use.
+        let found = made.global_variables.iter().find(|(_, one)| one.name.as_ref() == Some(&name));
+        module.global_variables[handle].init = match found.and_then(|(_, one)| one.init) {
+            Some(init) => Some(copied_value(&made, init, module)?),
+            None => None,
+        };
+    }
+    Ok(())
+}
+
+/// A value of another module: numbers, and vectors and matrices of them.
+fn copied_value(
+    made: &Module,
+    value: Handle<Expression>,
+    module: &mut Module,
+) -> Result<Handle<Expression>, Diagnostic> {
+    let other = || {
+        let message = "the initial value of a variable is an array or a structure, and computed \
+                       from overrides";
+        Diagnostic::error(codes::EMIT_FAILED, message)
+    };
+    let copied_type = |ty: Handle<Type>, module: &mut Module| match &made.types[ty].inner {
+        TypeInner::Scalar(_)
+        | TypeInner::Vector { size: _, scalar: _ }
+        | TypeInner::Matrix { columns: _, rows: _, scalar: _ } => {
+            Ok(module.types.insert(made.types[ty].clone(), Span::UNDEFINED))
+        }
+        _ => Err(other()),
+    };
+    let copy = match &made.global_expressions[value] {
+        Expression::Literal(literal) => Expression::Literal(*literal),
+        Expression::Constant(constant) => {
+            return copied_value(made, made.constants[*constant].init, module);
+        }
+        Expression::ZeroValue(ty) => Expression::ZeroValue(copied_type(*ty, module)?),
+        Expression::Compose { ty, components } => {
+            let ty = copied_type(*ty, module)?;
+            let parts = components.iter().map(|part| copied_value(made, *part, module));
+            Expression::Compose { ty, components: parts.collect::<Result<_, _>>()? }
+        }
+        Expression::Splat { size, value } => {
+            Expression::Splat { size: *size, value: copied_value(made, *value, module)? }
+        }
+        _ => return Err(other()),
+    };
+    Ok(module.global_expressions.append(copy, Span::UNDEFINED))
 }
 
 /// Why naga could not compute a size or a default.
@@ -204,6 +301,8 @@ pub fn with_constants(
         (point.workgroup_size, point.workgroup_size_overrides) = (workgroup_size, None);
     }
     put_lengths(&mut module, &fixed)?;
+    let point = &validated.module.entry_points[index];
+    put_initial_values(validated, &mut module, point)?;
     // Whatever still names an override without a value keeps it, and the caller refuses it.
     for (handle, value) in &fixed {
         let init = Expression::Literal(*value);

@@ -1,5 +1,5 @@
 //! Overrides in WGSL where naga's writer does not write them: in the size of a workgroup, in the
-//! length of an array, and in the default of another override.
+//! length of an array, in the default of another override, and in the initial value of a variable.
 //!
 //! naga writes a module that has numbers or nothing in these places, and the expressions are put
 //! into its text.
@@ -26,7 +26,9 @@ const SIZE: &str = "@compute @workgroup_size(";
 /// # Errors
 /// A message, where the module has too many such arrays.
 pub fn written_module(module: &Module) -> Result<Option<Module>, String> {
-    if deciding(module).is_empty() {
+    if deciding(module).is_empty()
+        && !module.global_variables.iter().any(|(_, one)| is_open(module, one))
+    {
         return Ok(None);
     }
     let mut written = module.clone();
@@ -48,7 +50,29 @@ pub fn written_module(module: &Module) -> Result<Option<Module>, String> {
             written.overrides[handle].init = None;
         }
     }
+    for (handle, _) in module.global_variables.iter().filter(|(_, one)| is_open(module, one)) {
+        written.global_variables[handle].init = None;
+    }
     Ok(Some(written))
+}
+
+/// Whether naga does not write the initial value of a variable, since it computes with overrides.
+fn is_open(module: &Module, variable: &naga::GlobalVariable) -> bool {
+    variable.init.is_some_and(|init| computes(module, init))
+}
+
+fn computes(module: &Module, expression: Handle<Expression>) -> bool {
+    match &module.global_expressions[expression] {
+        Expression::Literal(_)
+        | Expression::Constant(_)
+        | Expression::Override(_)
+        | Expression::ZeroValue(_) => false,
+        Expression::Compose { ty: _, components } => {
+            components.iter().any(|component| computes(module, *component))
+        }
+        Expression::Splat { size: _, value } => computes(module, *value),
+        _ => true,
+    }
 }
 
 /// The text that naga wrote of [`written_module`], with the expressions in their places. `names` are
@@ -59,6 +83,7 @@ pub fn written_module(module: &Module) -> Result<Option<Module>, String> {
 pub fn with_expressions(text: &str, module: &Module, names: &[String]) -> Result<String, String> {
     let print = ExpressionText { module, names };
     let mut overrides = module.overrides.iter();
+    let mut variables = module.global_variables.iter();
     let mut points = module.entry_points.iter().filter(|one| one.stage == ShaderStage::Compute);
     let mut out = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
@@ -71,6 +96,15 @@ pub fn with_expressions(text: &str, module: &Module, names: &[String]) -> Result
                     out += &format!("{declared} = {};\n", print.expression(init)?);
                 }
                 _ => out.push_str(line),
+            }
+        } else if line.starts_with("var<") || line.starts_with("var ") {
+            let (_, found) = variables.next().ok_or("a variable was written twice")?;
+            match found.init.filter(|_| is_open(module, found)) {
+                Some(init) => {
+                    let declared = line.trim_end().trim_end_matches(';');
+                    out += &format!("{declared} = {};\n", print.expression(init)?);
+                }
+                None => out.push_str(line),
             }
         } else if let Some(rest) = line.strip_prefix(SIZE) {
             let point = points.next().ok_or("a compute shader was written twice")?;
@@ -137,6 +171,16 @@ impl ExpressionText<'_> {
         let of = |handle: &Handle<Expression>| self.expression(*handle);
         Ok(match &self.module.global_expressions[handle] {
             Expression::Override(handle) => self.name(*handle)?,
+            Expression::Constant(handle) => of(&self.module.constants[*handle].init)?,
+            Expression::Compose { ty, components } => {
+                let TypeInner::Vector { size, scalar } = self.module.types[*ty].inner else {
+                    return Err(unwritable());
+                };
+                let parts = components.iter().map(of).collect::<Result<Vec<_>, String>>()?;
+                let size = size as u8;
+                format!("vec{size}<{}>({})", scalar_name(scalar.kind)?, parts.join(", "))
+            }
+            Expression::Splat { size, value } => format!("vec{}({})", *size as u8, of(value)?),
             Expression::Unary { op, expr } => {
                 let sign = match op {
                     UnaryOperator::Negate => "-",

@@ -43,6 +43,11 @@ impl Table {
         }
     }
 
+    /// How many there are.
+    pub fn programs(&self) -> usize {
+        self.programs
+    }
+
     /// Every program that is judged wrongly.
     pub fn listed(&self) -> String {
         let all = self.wrongly_refused.iter().chain(&self.wrongly_accepted);
