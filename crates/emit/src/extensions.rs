@@ -8,8 +8,11 @@ use lamplight_validate::{functions, makes_scalar};
 /// The directive of an extension, and whether a module needs it.
 type Extension = (&'static str, fn(&Module) -> bool);
 
-const EXTENSIONS: [Extension; 2] =
-    [("enable subgroups;\n", uses_subgroups), ("enable f16;\n", uses_f16)];
+const EXTENSIONS: [Extension; 3] = [
+    ("enable subgroups;\n", uses_subgroups),
+    ("enable primitive_index;\n", uses_primitive_index),
+    ("enable f16;\n", uses_f16),
+];
 
 /// The text that naga wrote of a module, with the extensions that the module needs.
 pub fn with_extensions(text: String, module: &Module) -> String {
@@ -29,31 +32,43 @@ fn uses_f16(module: &Module) -> bool {
 }
 
 fn uses_subgroups(module: &Module) -> bool {
-    let is_built_in = |binding: &Option<Binding>| match binding {
-        Some(Binding::BuiltIn(built_in)) => matches!(
+    let is_built_in = |built_in: BuiltIn| {
+        matches!(
             built_in,
             BuiltIn::NumSubgroups
                 | BuiltIn::SubgroupId
                 | BuiltIn::SubgroupSize
                 | BuiltIn::SubgroupInvocationId
-        ),
+        )
+    };
+    let computes = |function: &Function| {
+        function.expressions.iter().any(|(_, value)| {
+            matches!(
+                value,
+                Expression::SubgroupBallotResult | Expression::SubgroupOperationResult { .. }
+            )
+        })
+    };
+    takes_built_in(module, is_built_in) || functions(module).any(computes)
+}
+
+fn uses_primitive_index(module: &Module) -> bool {
+    takes_built_in(module, |built_in| built_in == BuiltIn::PrimitiveIndex)
+}
+
+/// Whether an argument of a function, or a member of a structure, is such a built-in value.
+fn takes_built_in(module: &Module, is_it: impl Fn(BuiltIn) -> bool) -> bool {
+    let is_bound = |binding: &Option<Binding>| match binding {
+        Some(Binding::BuiltIn(built_in)) => is_it(*built_in),
         Some(Binding::Location { .. }) | None => false,
     };
     let has_member = module.types.iter().any(|(_, one)| match &one.inner {
         TypeInner::Struct { members, span: _ } => {
-            members.iter().any(|member| is_built_in(&member.binding))
+            members.iter().any(|member| is_bound(&member.binding))
         }
         _ => false,
     });
-    let is_used = |function: &Function| {
-        let mut values = function.expressions.iter();
-        function.arguments.iter().any(|argument| is_built_in(&argument.binding))
-            || values.any(|(_, value)| {
-                matches!(
-                    value,
-                    Expression::SubgroupBallotResult | Expression::SubgroupOperationResult { .. }
-                )
-            })
-    };
-    has_member || functions(module).any(is_used)
+    let is_taken =
+        |function: &Function| function.arguments.iter().any(|argument| is_bound(&argument.binding));
+    has_member || functions(module).any(is_taken)
 }

@@ -80,6 +80,7 @@ pub const SOME_TARGET_HAS: Capabilities = CAPABILITIES
     .union(Capabilities::CLIP_DISTANCES)
     .union(Capabilities::DUAL_SOURCE_BLENDING)
     .union(Capabilities::SUBGROUP)
+    .union(Capabilities::PRIMITIVE_INDEX)
     .union(Capabilities::TEXTURE_EXTERNAL)
     .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS)
     .union(BINDING_ARRAYS);

@@ -20,7 +20,8 @@ pub const TARGET: TargetEntry = TargetEntry {
     binary: false,
     about: "GLSL 3.30 core, for OpenGL 3.3",
     glsl: Some(VERSION),
-    capabilities: Capabilities::CLIP_DISTANCES.union(Capabilities::DUAL_SOURCE_BLENDING),
+    capabilities: Capabilities::CLIP_DISTANCES.union(Capabilities::DUAL_SOURCE_BLENDING)
+        .union(Capabilities::PRIMITIVE_INDEX),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
     validation: ValidatorRules { validator: "glslang", rules: &["own"] },

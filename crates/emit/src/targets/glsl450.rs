@@ -24,6 +24,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     capabilities: Capabilities::FLOAT64
         .union(Capabilities::CLIP_DISTANCES)
         .union(Capabilities::DUAL_SOURCE_BLENDING)
+        .union(Capabilities::PRIMITIVE_INDEX)
         .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS),
     header: glsl::HEADER,
     overrides: Overrides::Macros,

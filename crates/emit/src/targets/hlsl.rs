@@ -30,6 +30,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     about: "HLSL, shader model 5.1 (Direct3D 12)",
     glsl: None,
     capabilities: Capabilities::DUAL_SOURCE_BLENDING
+        .union(Capabilities::PRIMITIVE_INDEX)
         .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS)
         .union(TEXTURE_ARRAYS),
     header: &[],

@@ -25,6 +25,7 @@ pub const TARGET: TargetEntry = TargetEntry {
         .union(Capabilities::SHADER_INT64)
         .union(Capabilities::CLIP_DISTANCES)
         .union(Capabilities::DUAL_SOURCE_BLENDING)
+        .union(Capabilities::PRIMITIVE_INDEX)
         .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS)
         .union(BINDING_ARRAYS),
     header: &[],

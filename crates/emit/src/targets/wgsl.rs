@@ -22,6 +22,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     capabilities: Capabilities::SHADER_FLOAT16
         .union(Capabilities::CLIP_DISTANCES)
         .union(Capabilities::DUAL_SOURCE_BLENDING)
+        .union(Capabilities::PRIMITIVE_INDEX)
         .union(Capabilities::SUBGROUP)
         .union(Capabilities::TEXTURE_EXTERNAL)
         .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS),
