@@ -67,22 +67,26 @@ fn read<C: for<'d> Deserialize<'d>>(checkout: &Path, file: &str) -> Result<Vec<C
     serde_json::from_str(&text).map_err(|error| failed(&error))
 }
 
-/// Whether a case is composed to what it expects: the same declarations and directives, in any order.
+/// Whether a case is composed to what it expects: the same declarations and directives, in any order,
+/// with the names of one of the two forms of mangling. (Overrides always keep theirs.)
 fn composed(case: &Composition) -> Result<(), Diagnostic> {
+    let mangled = case.underscore.as_ref().map(|text| (Mangle::Underscore, text));
+    match mangled.map(|(mangle, expected)| composed_to(case, mangle, expected)) {
+        Some(Ok(())) => Ok(()),
+        Some(Err(_)) | None => composed_to(case, Mangle::default(), &case.expected),
+    }
+}
+
+fn composed_to(case: &Composition, mangle: Mangle, expected: &str) -> Result<(), Diagnostic> {
     let files = case.sources.iter();
     let files = files.map(|(path, text)| (path.trim_start_matches("./").to_owned(), text.clone()));
     let files = Box::new(Memory(files.collect()));
     let packages = Packages::new(Package { name: "package".to_owned(), files }, Vec::new());
-    let mangle = match case.underscore {
-        Some(_) => Mangle::Underscore,
-        None => Mangle::default(),
-    };
     let options = Options { keep: Keep::Root, mangle, ..Options::default() };
     let text = wesl::load(&mut SourceSet::default(), &packages, "main.wgsl")
         .and_then(|graph| compose::wesl::compose(&graph, &Settings::default(), &options))
         .map_err(first)?
         .text;
-    let expected = case.underscore.as_ref().unwrap_or(&case.expected);
     let (found, expected) = (declarations(&text)?, declarations(expected)?);
     match found == expected {
         true => Ok(()),
@@ -98,7 +102,7 @@ fn first(errors: Diagnostics) -> Diagnostic {
     errors.into_iter().next().unwrap_or_else(none)
 }
 
-/// The declarations and directives of a text as words, sorted.
+/// The declarations and directives of a text as words, sorted, without commas at the ends of lists.
 fn declarations(text: &str) -> Result<Vec<String>, Diagnostic> {
     let mut sources = SourceSet::default();
     let source = sources.add("case.wesl".to_owned(), text.to_owned());
@@ -106,8 +110,11 @@ fn declarations(text: &str) -> Result<Vec<String>, Diagnostic> {
     let words = |start: u32, end: u32| {
         let tokens = split.tokens.iter();
         let inside = tokens.filter(|token| (start..end).contains(&token.start));
-        let words = inside.map(|token| &text[token.start as usize..token.end as usize]);
-        words.collect::<Vec<_>>().join(" ")
+        let words: Vec<&str> =
+            inside.map(|token| &text[token.start as usize..token.end as usize]).collect();
+        let is_last = |at: usize| matches!(words.get(at + 1), Some(&(")" | "}")));
+        let kept = words.iter().enumerate().filter(|(at, word)| **word != "," || !is_last(*at));
+        kept.map(|(_, word)| *word).collect::<Vec<_>>().join(" ")
     };
     let items = split.module.items.iter().map(|item| words(item.range.start, item.range.end));
     let directives = split.module.directives.iter();
