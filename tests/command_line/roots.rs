@@ -10,6 +10,7 @@ pub const CASES: &[Case] = &[
     ("root_outside_of_wesl_toml", outside),
     ("nearest_manifest", nearest_manifest),
     ("names_of_files", names_of_files),
+    ("folders_and_macros_of_glsl", folders_and_macros),
 ];
 
 const WESL_TOML: &str = "[package]\nname = \"p\"\nedition = \"2026_pre\"\nroot = \"shaders\"\n";
@@ -37,6 +38,41 @@ fn package(more: &[(&str, &str)]) -> Result<Package, libtest_mimic::Failed> {
         ("shaders/light/one.toml", CASE),
     ];
     Package::new(&[&files, more].concat())
+}
+
+/// The table `glsl` of the manifest counts for every command, and what it names is read again when it
+/// changes.
+fn folders_and_macros() -> Outcome {
+    let manifest = "[glsl]\ninclude = [\"../common\"]\ndefine = { LIGHTS = 4, SCALE = \"(0.25)\" }\n\
+                    [program.lit]\nglsl = { fragment = \"lit.frag\" }\ntargets = [\"wgsl\"]\n";
+    let light = "vec3 lit(vec3 n) { return n * LIGHTS * SCALE; }\n";
+    let fragment = "#version 450\n#include \"light.glsl\"\nlayout(location = 0) in vec3 n;\n\
+                    layout(location = 0) out vec4 color;\nvoid main() { color = vec4(lit(n), 1); }\n";
+    let package = Package::new(&[
+        ("pkg/lamplight.toml", manifest),
+        ("pkg/lit.frag", fragment),
+        ("common/light.glsl", light),
+    ])?;
+    package.run_in("pkg", "lint .")?.ends(0)?.says(&["0 errors"])?;
+    package.run_in("pkg", "compile lit.frag --target wgsl -o out")?.ends(0)?;
+    package.run_in("pkg", "gen -o b --depfile b.d")?.ends(0)?;
+    let rule = std::fs::read_to_string(package.path("pkg/b.d"))?;
+    let first =
+        package.run_in("pkg", "bundle get b lit fragment default --target wgsl")?.ends(0)?.out;
+    package.write("common/light.glsl", &light.replace("LIGHTS", "(LIGHTS + 1)"))?;
+    package.run_in("pkg", "gen --check -o b")?.ends(3)?;
+    package.run_in("pkg", "gen -o b")?.ends(0)?;
+    let second =
+        package.run_in("pkg", "bundle get b lit fragment default --target wgsl")?.ends(0)?.out;
+    package.write("pkg/lamplight.toml", &manifest.replace("../common", "../nothing"))?;
+    let lost = package.run_in("pkg", "gen -o b --diagnostics short")?.ends(1)?;
+    lost.says(&[
+        "lamplight.toml:2:12: error[unreadable]: there is no file or folder `../nothing`",
+    ])?;
+    match (rule.contains("../common/light.glsl"), first == second) {
+        (true, false) => Ok(()),
+        found => Err(format!("{found:?}\n{rule}\n{first}\n{second}").into()),
+    }
 }
 
 /// The package is found from a folder below its root, and messages name files without `..`.

@@ -178,20 +178,7 @@ pub fn rename_symbol(
         return Err("this is another name for it: rename it in its import".to_owned().into());
     }
     shared.refuse_unread(&old)?;
-    for package in &shared.packages {
-        if let Some(taken) = name_taken_in(package, &new) {
-            return Err(format!("`{new}` is already declared in `{taken}`").into());
-        }
-        if let Some(place) = package.modules.divided_place(package.symbol) {
-            let source = package.modules.sources.get(place.source);
-            let line = source.text[..place.start as usize].matches('\n').count() + 1;
-            let message = format!(
-                "under other conditions, `{old}` is something else in {}:{line}",
-                source.path
-            );
-            return Err(message.into());
-        }
-    }
+    refuse_clashes(&shared, &old, &new)?;
     let places = shared.packages.iter().flat_map(|package| {
         let sources = &package.modules.sources;
         let places = package.references().into_iter().filter_map(|span| {
@@ -203,6 +190,24 @@ pub fn rename_symbol(
         places.collect::<Vec<_>>()
     });
     report::rename_json(&new, places)
+}
+
+/// Fails where the new name would change what a place means.
+fn refuse_clashes(shared: &SharedSymbol, old: &str, new: &str) -> Result<(), RequestError> {
+    for package in &shared.packages {
+        if let Some(taken) = name_taken_in(package, new) {
+            return Err(format!("`{new}` is already declared in `{taken}`").into());
+        }
+        if let Some(place) = package.modules.divided_place(package.symbol) {
+            let source = package.modules.sources.get(place.source);
+            let line = source.text[..place.start as usize].matches('\n').count() + 1;
+            let place = format!("{}:{line}", source.path);
+            return Err(
+                format!("under other conditions, `{old}` is something else in {place}").into()
+            );
+        }
+    }
+    Ok(())
 }
 
 /// Why a word cannot be the name of a declaration, as the end of a sentence that begins with it.

@@ -59,6 +59,18 @@ pub fn packages(
     sources: &mut SourceSet,
     library: Embedded,
 ) -> Result<Packages, Diagnostics> {
+    let manifest = place::manifest_of(root);
+    packages_with(root, manifest.as_deref(), sources, library)
+}
+
+/// As [`packages`], for another manifest than that of the root.
+fn packages_with(
+    root: &Path,
+    manifest: Option<&Path>,
+    sources: &mut SourceSet,
+    library: Embedded,
+) -> Result<Packages, Diagnostics> {
+    let folder = root;
     if root.is_file() {
         return Err(vec![Diagnostic::error(
             codes::UNREADABLE,
@@ -67,7 +79,37 @@ pub fn packages(
     }
     let disk = Disk::new(root).map_err(|error| vec![unreadable_file(root, &error)])?;
     let files = listed::ListedFiles::new(root, Box::new(disk));
-    dependencies::packages(root, root_package(Box::new(files)), sources, library)
+    let root = root_package(Box::new(files));
+    let mut packages = dependencies::packages(folder, root, sources, library)?;
+    if let Some(manifest) = manifest {
+        add_glsl(&mut packages, manifest, sources)?;
+    }
+    Ok(packages)
+}
+
+/// Adds what the table `glsl` of a manifest lists: folders of `#include`, and macros.
+fn add_glsl(
+    packages: &mut Packages,
+    manifest: &Path,
+    sources: &mut SourceSet,
+) -> Result<(), Diagnostics> {
+    let folder = manifest.parent().unwrap_or(Path::new(""));
+    let Ok(disk) = Disk::new(folder) else { return Ok(()) };
+    let package = Package { name: String::new(), files: Box::new(disk) };
+    let name = manifest.file_name().unwrap_or_default().to_string_lossy();
+    // A manifest that cannot be read is reported where the whole of it is.
+    let Ok(Some(id)) = source::read(sources, &package, &name) else { return Ok(()) };
+    let glsl = manifest::read_glsl(sources, id);
+    for listed in glsl.include {
+        let place = PathBuf::from(source::shown_path(&folder.join(&listed.text)));
+        let disk = Disk::new(&place)
+            .map_err(|error| vec![unreadable_file(&place, &error).at(listed.span, "named here")])?;
+        packages.add_includes(Package { name: place.display().to_string(), files: Box::new(disk) });
+    }
+    for (name, value) in glsl.define {
+        packages.definitions.push_str(&format!("#define {name} {value}\n"));
+    }
+    Ok(())
 }
 
 /// A package that has no folder yet, together with the library. Its files come from elsewhere,
@@ -178,7 +220,7 @@ pub fn declared(
     let folder = path.parent().unwrap_or(Path::new(""));
     let root = place::root_beside(folder);
     manifest.adopt(features(&root, sources)?);
-    let packages = packages(&root, sources, library)?;
+    let packages = packages_with(&root, Some(path), sources, library)?;
     manifest.warnings.extend(packages.warnings.iter().cloned());
     Ok((manifest, packages))
 }

@@ -25,6 +25,10 @@
 //! FOG = true                              # on, unless it is turned off
 //! MSAA = { doc = "Several samples.", default = false, excludes = ["WEBGL2"] }
 //! WEBGL2 = false
+//!
+//! [glsl]                                  # as `-I` and `-D` on the command line
+//! include = ["../common"]
+//! define = { LIGHTS = 4 }
 //! ```
 //!
 //! Each entry of `only` is a slice of the space, and their union is wanted: an axis has the
@@ -36,12 +40,14 @@
 
 mod axes;
 mod features;
+mod glsl;
 mod lists;
 mod names;
 mod program;
 mod reader;
 
 pub use features::{Feature, Features, read_file as read_features};
+pub use glsl::{GlslSettings, read_file as read_glsl};
 pub use program::{Glsl, ManifestFile, Program};
 
 use toml::de::DeTable;
@@ -57,6 +63,8 @@ pub struct Manifest {
     pub programs: Vec<Program>,
     /// What it declares, and what the `wesl.toml` of its package does.
     pub features: Features,
+    /// What files in GLSL find.
+    pub glsl: GlslSettings,
     /// Lints.
     pub warnings: Vec<Diagnostic>,
 }
@@ -86,20 +94,22 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Manifest, Diagnostics>
     let mut reader = ManifestReader::new(sources, id);
     let programs = read_programs(&mut reader, document.get_ref());
     let features = features::read_features(&mut reader, document.get_ref());
+    let glsl = glsl::read_glsl(&mut reader, document.get_ref());
     let mut problems = reader.problems;
     problems.sort_by_key(|problem| problem.labels.first().map(|label| label.span));
     if problems.iter().any(|problem| problem.severity == Severity::Error) {
         return Err(problems);
     }
-    let mut manifest = Manifest { programs, features: Features::default(), warnings: problems };
+    let mut manifest =
+        Manifest { programs, features: Features::default(), glsl, warnings: problems };
     manifest.adopt(features);
     Ok(manifest)
 }
 
 fn read_programs(reader: &mut ManifestReader, document: &DeTable) -> Vec<Program> {
-    reader.check_keys(document, &["program", "features"], "a manifest");
+    reader.check_keys(document, &["program", "features", "glsl"], "a manifest");
     let Some(found) = document.get("program") else {
-        if document.contains_key("features") {
+        if document.contains_key("features") || document.contains_key("glsl") {
             return Vec::new();
         }
         let message = "the manifest declares no program";
