@@ -111,7 +111,7 @@ impl Command {
         let names = match self {
             Self::Check(arguments) => arguments.executor.as_slice(),
             Self::Eval(arguments) => std::slice::from_ref(&arguments.executor),
-            Self::Render(arguments) => std::slice::from_ref(&arguments.executor),
+            Self::Render(arguments) => arguments.executor.as_slice(),
             _ => &[],
         };
         names.iter().filter_map(|name| executors::find_executor(name)).collect()
