@@ -283,7 +283,7 @@ fn refused() -> Outcome {
     const COLOR: &str = "-> @location(0) vec4f { return vec4f(1.0); }";
     let wgsl = |text: String| vec![(None, text)];
     let cases = [
-        (wgsl("@compute @workgroup_size(1) fn main() {}".into()), "no fragment stage to draw: `main` is none"),
+        (wgsl("@compute @workgroup_size(1) fn main() {}".into()), "no fragment stage to draw: `main` is a compute stage"),
         (wgsl("const a = 1;".into()), "there is no entry point to draw"),
         (wgsl(format!("@fragment fn a() {COLOR} @fragment fn b() {COLOR}")), "several fragment stages: a, b"),
         (wgsl("@fragment fn a() -> @location(0) vec4u { return vec4u(1u); }".into()), "returns vec4u at location 0"),

@@ -20,6 +20,9 @@ pub struct Around<'a> {
     pub time: f64,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// Whether the matrix for normals leads to view space, as where the stage knows only the product
+    /// of model and view.
+    pub seen_normals: bool,
 }
 
 /// The light where a model has none: above the viewer, to the right.
@@ -74,7 +77,8 @@ pub fn around_of<'a>(
     time: f64,
     shot: &Shot,
 ) -> Around<'a> {
-    Around { eye, lamps, world_from_object: DMat4::IDENTITY, clip, time, size: shot.size }
+    let (world_from_object, size) = (DMat4::IDENTITY, shot.size);
+    Around { eye, lamps, world_from_object, clip, time, size, seen_normals: false }
 }
 
 #[cfg(test)]
@@ -95,6 +99,7 @@ pub mod tests {
             clip: Clip::Wgpu,
             time: 1.5,
             size: [64, 32],
+            seen_normals: false,
         }
     }
 }

@@ -12,6 +12,7 @@ use lamplight_scenes::sets::TextureMap;
 
 use super::around::Around;
 use super::defaults::default_numbers;
+use super::matrices::is_model_view;
 use super::shape::{NumberType, short_type};
 use super::stages::{OwnStage, OwnStages};
 use super::table::{Origin, Row, RowKind, numbers_text};
@@ -86,7 +87,9 @@ impl<'s> BoundStages<'s> {
 
     fn check_textures(&self, request: &OwnRequest) -> Result<(), Diagnostics> {
         let known: Vec<&str> = self.textures().map(|one| one.binding.name.as_str()).collect();
-        let wrong = request.textures.iter().filter(|(name, _)| !known.contains(&name.as_str()));
+        let is_known =
+            |name: &str| known.contains(&name) || known.contains(&member_name(name).as_str());
+        let wrong = request.textures.iter().filter(|(name, _)| !is_known(name));
         let error = |(name, given): (&String, &GivenTexture)| {
             let error = refused(&format!("no stage reads a texture `{name}`"));
             let error = error.suggest(name, known.iter().copied());
@@ -138,7 +141,10 @@ impl<'s> BoundStages<'s> {
         shot: &Shot,
     ) -> Result<(), Diagnostic> {
         let binding = bound.binding;
-        let given = request.textures.get(&binding.name);
+        let mut all = request.textures.iter();
+        let given = all
+            .find(|(name, _)| **name == binding.name || member_name(name) == binding.name)
+            .map(|(_, given)| given);
         let (map, sky, value, from) = match given {
             Some(given) => {
                 let (map, sky) = given_content(bound, given, shot)?;
@@ -167,6 +173,15 @@ impl<'s> BoundStages<'s> {
         let (name, ty) = (binding.name.clone(), binding.ty.clone());
         self.texture_rows.push(Row { kind: RowKind::Texture, name, ty, value, from });
         Ok(())
+    }
+
+    /// Whether a stage knows the product of model and view, and not the two.
+    pub fn has_model_view(&self) -> bool {
+        let leaves = || self.bound.iter().flat_map(leaves_of).map(|(_, leaf)| leaf);
+        leaves().any(|leaf| {
+            let name = leaf.path.rsplit('.').next().unwrap_or_default();
+            leaf.ty.starts_with("mat4") && is_model_view(name)
+        })
     }
 
     /// The uniform buffers of an object.
@@ -219,6 +234,7 @@ impl<'s> BoundStages<'s> {
             }
         }
         let mut notes = self.notes.clone();
+        let mut rows = merged_elements(rows);
         if rows.len() > ROWS {
             notes.push(format!("{} more uniforms are not listed", rows.len() - ROWS));
             rows.truncate(ROWS);
@@ -237,6 +253,40 @@ impl<'s> BoundStages<'s> {
     }
 }
 
+/// Elements of an array that got the same are one row.
+fn merged_elements(rows: Vec<Row>) -> Vec<Row> {
+    let parts = |row: &Row| {
+        let (before, rest) = row.name.split_once('[')?;
+        let (index, after) = rest.split_once(']')?;
+        Some((before.to_owned(), index.parse::<u32>().ok()?, after.to_owned()))
+    };
+    let mut merged: Vec<(Row, u32)> = Vec::new();
+    for row in rows {
+        let own = parts(&row);
+        let earlier = own.as_ref().and_then(|(before, index, after)| {
+            merged.iter_mut().find(|(kept, count)| {
+                let is_next = |(first_before, first, first_after): (String, u32, String)| {
+                    (&first_before, &first_after) == (before, after) && first + *count == *index
+                };
+                (&kept.ty, &kept.value, kept.from) == (&row.ty, &row.value, row.from)
+                    && parts(kept).is_some_and(is_next)
+            })
+        });
+        match earlier {
+            Some((_, count)) => *count += 1,
+            None => merged.push((row, 1)),
+        }
+    }
+    let named = |(row, count): (Row, u32)| match parts(&row) {
+        Some((before, first, after)) if count > 1 => {
+            let name = format!("{before}[{first}..{}]{after}", first + count - 1);
+            Row { name, ..row }
+        }
+        _ => row,
+    };
+    merged.into_iter().map(named).collect()
+}
+
 fn blank_map() -> TextureMap {
     TextureMap { width: 1, height: 1, texels: vec![glam::DVec4::ONE] }
 }
@@ -244,6 +294,11 @@ fn blank_map() -> TextureMap {
 fn upside_down(map: TextureMap) -> TextureMap {
     let rows = map.texels.chunks(map.width.max(1)).rev();
     TextureMap { texels: rows.flatten().copied().collect(), ..map }
+}
+
+/// The name of a sampler in a structure of GLSL, `material.diffuse`, as a texture of its own.
+fn member_name(name: &str) -> String {
+    name.replace('.', "_")
 }
 
 /// What a texture that was given holds. A cube holds an environment, and no other texture does.
@@ -373,7 +428,24 @@ fn is_negated(text: &str, path: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::is_negated;
+    use super::{is_negated, merged_elements};
+    use crate::own::table::{Origin, Row, RowKind};
+
+    #[test]
+    fn elements_in_one_row() {
+        let row = |name: &str, value: &str| Row {
+            kind: RowKind::Uniform,
+            name: name.to_owned(),
+            ty: "f32".to_owned(),
+            value: value.to_owned(),
+            from: Origin::Name,
+        };
+        let rows = ["a[0].x", "a[0].y", "a[1].x", "a[1].y", "a[2].x"].map(|name| row(name, "1"));
+        let mut rows = rows.to_vec();
+        rows.push(row("a[2].y", "2"));
+        let names: Vec<String> = merged_elements(rows).into_iter().map(|row| row.name).collect();
+        assert_eq!(names, ["a[0..2].x", "a[0..1].y", "a[2].y"]);
+    }
 
     #[test]
     fn names_with_a_minus() {

@@ -125,6 +125,8 @@ fn vs_main(
     let seen_position = around.view_from_world * position;
     let seen_normal = around.view_from_world * normal;
     let light_position = around.light_from_world * position;
+    let light_place = light_position.xyz / light_position.w;
+    let light_texel = vec4f(light_place.xy * vec2f(0.5, -0.5) + 0.5, light_place.z, 1.0);
     let depth = vec4f(-seen_position.z);
     var given: Given;
     given.clip = camera.clip_from_world * position;
@@ -173,6 +175,8 @@ fn given_value(input: &Varying) -> String {
         Source::SeenPosition if input.name.as_deref() == Some("vViewPosition") => "-seen_position",
         Source::SeenPosition => "seen_position",
         Source::SeenNormal => "seen_normal",
+        // Three numbers are a place in the shadow map, four are still to be divided.
+        Source::LightPosition if NumberType::of(ty).rows < 4 => "light_texel",
         Source::LightPosition => "light_position",
         Source::Depth => "depth",
         Source::Zero => return format!("{ty}()"),

@@ -30,6 +30,13 @@ enum Space {
 /// A matrix with what it is, in words.
 pub type NamedMatrix = (DMat4, String);
 
+/// Whether a name is that of the product of model and view, as three.js has it.
+pub fn is_model_view(name: &str) -> bool {
+    let words = name_words(name);
+    let has = |known| has_word(&words, known);
+    has(MODEL) && has(VIEW) && !has(PROJECTION) && !has(NORMAL) && !has(INVERSE)
+}
+
 /// The numbers of a matrix, column by column, and what it is. `None` if its name says nothing.
 pub fn matrix_numbers(
     block: &str,
@@ -58,7 +65,8 @@ fn named_matrix(words: &[String], around: &Around<'_>) -> Option<NamedMatrix> {
     let is_inverse = has_word(words, INVERSE);
     // The inverse of the model's matrix, transposed, is the one for normals.
     if has_word(words, NORMAL) || (is_inverse && has_word(words, &["transpose", "transposed"])) {
-        return Some(of_normals(steps[1], around));
+        let is_plain = !steps.contains(&true);
+        return Some(of_normals(steps[1] || is_plain && around.seen_normals, around));
     }
     let whole = has_word(words, WHOLE) && words.len() == 1;
     if !steps.contains(&true) && !whole {
@@ -125,7 +133,8 @@ fn space_of(word: &str) -> Option<Space> {
 mod tests {
     use glam::{DMat3, DMat4, DVec3};
 
-    use super::matrix_numbers;
+    use super::{is_model_view, matrix_numbers};
+    use crate::own::around::Around;
     use crate::own::around::tests::sample;
     use crate::own::shape::NumberType;
 
@@ -165,6 +174,12 @@ mod tests {
         let expected = DMat3::from_mat4(normal).x_axis;
         let turned = turned.ok_or("no matrix")?;
         assert!((turned.normalize() - expected.normalize()).length() < 1e-9, "{turned}");
+        let seen = Around { seen_normals: true, ..around.clone() };
+        let found = matrix_numbers("", "normalMatrix", NumberType::of("mat3x3<f32>"), &seen);
+        let expected = DMat3::from_mat4(view * model).inverse().transpose().to_cols_array();
+        let found = found.map(|(numbers, _)| numbers).unwrap_or_default();
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9) && found.len() == 9);
+        assert!(is_model_view("modelViewMatrix") && !is_model_view("uMVP"));
         assert_eq!(matrix_numbers("", "wobble", NumberType::of("mat4x4<f32>"), &around), None);
         Ok(())
     }

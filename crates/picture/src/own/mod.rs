@@ -143,8 +143,9 @@ pub fn prepare_own(
         }
     };
     let clip = stages.vertex.as_ref().unwrap_or(&stages.fragment).clip;
-    let around = around_of(scene.eye, &scene.lamps, clip, request.time, shot);
     let bound = BoundStages::new(stages, request, shot)?;
+    let mut around = around_of(scene.eye, &scene.lamps, clip, request.time, shot);
+    around.seen_normals = bound.has_model_view();
     let is_upside_down = stages.is_for_opengl();
     let turned = match is_upside_down {
         true => DMat4::from_scale(glam::DVec3::new(1.0, -1.0, 1.0)),

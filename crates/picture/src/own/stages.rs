@@ -175,9 +175,13 @@ fn one_of<'t>(
 
 fn no_fragment(texts: &[OwnText]) -> Diagnostic {
     let known = names_of(texts, None);
+    let stage_of = |(_, point): (&OwnText, &naga::EntryPoint)| {
+        format!("`{}` is a {} stage", point.name, format!("{:?}", point.stage).to_lowercase())
+    };
+    let stages: Vec<String> = points(texts).map(stage_of).collect();
     let message = match known.is_empty() {
         true => "there is no entry point to draw".to_owned(),
-        false => format!("there is no fragment stage to draw: `{}` is none", known.join("`, `")),
+        false => format!("there is no fragment stage to draw: {}", stages.join(", ")),
     };
     let compute = names_of(texts, Some(ShaderStage::Compute));
     let help = match (compute.is_empty(), names_of(texts, Some(ShaderStage::Vertex)).is_empty()) {
@@ -228,7 +232,7 @@ fn fix_overrides(validated: &mut Validated, name: &str) -> Result<(), Diagnostic
     });
     let (module, info) = fixed.map_err(|error| {
         let message = format!("an `override` has no value: {error}");
-        vec![refused(&message).note("help: give it one in its declaration: `override x = 1.0;`")]
+        vec![refused(&message).note("help: `--constant NAME=VALUE` gives it one")]
     })?;
     (validated.module, validated.info) = (module, info);
     Ok(())

@@ -24,7 +24,7 @@ use crate::generate::add_numbers;
 use crate::picture::own::table::Row;
 use crate::picture::own::{OwnRequest, OwnStages, OwnText, choose_stages, prepare_own};
 use crate::picture::{Picture, Shot};
-use crate::source::SourceSet;
+use crate::source::{LIMITS, SourceSet};
 use watch::Seen;
 
 /// The file, if the argument is one: it is there, or its name is that of a shader.
@@ -201,10 +201,12 @@ impl Job<'_> {
         seen: &mut Seen,
     ) -> Result<(OwnText, SourceSet, Option<String>), Failure> {
         seen.add_file(file);
-        let ready = input.compose(file, sources, self.form).inspect_err(|failure| {
-            if let Failure::Input(sources, _) = failure {
-                seen.add_sources(sources);
+        let ready = input.compose(file, sources, self.form).map_err(|failure| match failure {
+            Failure::Input(sources, errors) => {
+                seen.add_sources(&sources);
+                Failure::Input(sources, self.with_wrap(file, errors))
             }
+            failure => failure,
         })?;
         let ComposedInput { sources, mut composed, context } = ready;
         add_numbers(&mut composed, &context.numbers);
@@ -216,9 +218,23 @@ impl Job<'_> {
             }
             Err(errors) => {
                 seen.add_sources(&sources);
-                Err(Failure::Input(sources, context.explain(errors)))
+                Err(Failure::Input(sources, self.with_wrap(file, context.explain(errors))))
             }
         }
+    }
+
+    /// Adds how a shader of Shadertoy is drawn, if the file may be one.
+    fn with_wrap(&self, file: &Path, mut errors: Diagnostics) -> Diagnostics {
+        if self.arguments.input.wraps() {
+            return errors;
+        }
+        let text = crate::input::read_file(file, LIMITS.file_bytes as u64).unwrap_or_default();
+        let text = String::from_utf8_lossy(&text);
+        let is_part = text.contains("mainImage") && !text.contains("void main(");
+        if is_part && let Some(last) = errors.pop() {
+            errors.push(last.note("help: `--wrap shadertoy` makes a shader of `mainImage`"));
+        }
+        errors
     }
 
     /// A note about a file that may be the other stage and was not read.
