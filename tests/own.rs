@@ -59,20 +59,20 @@ fn encoded(linear: f64) -> f64 {
 }
 
 const CASES: &[Case] = &[
-    // The plane faces the viewer's side: its normal is +z.
+    // The normal of the plane is +y.
     Case {
         name: "wesl fragment on a model",
         texts: &[(
             None,
             "import lamplight::brdf::diffuse::lambert;
              @fragment fn fs_main(@location(0) vNormal: vec3f, @location(1) uv: vec2f) -> @location(0) vec4f {
-                 return vec4f(vNormal * 0.5 + lambert(vNormal, vec3f(0.0, 0.0, 0.25)), 1.0);
+                 return vec4f(vNormal * 0.5 + lambert(vNormal, vec3f(0.0, 0.25, 0.0)), 1.0);
              }",
         )],
         uniforms: &[],
         model: Some("plane"),
         linear: true,
-        expected: |_, _| [encoded(0.25), encoded(0.25), encoded(0.75)],
+        expected: |_, _| [encoded(0.25), encoded(0.75), encoded(0.25)],
     },
     // WebGPU counts pixels from the top. A number alone is grey.
     Case {

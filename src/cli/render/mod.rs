@@ -68,8 +68,8 @@ pub struct Arguments {
     #[arg(long, requires = "preset", conflicts_with_all = ["set", "program", "scene", "model", "camera",
         "all", "comparisons", "cascades"])]
     beside: bool,
-    /// The file of the picture [default: the name of the preset or the shader, or `render.png`]; with `--all` and
-    /// `--comparisons`, a folder [default: `gallery`].
+    /// The file of the picture [default: the name of the preset or the shader, or `render.png`];
+    /// with `--all` and `--comparisons`, a folder [default: `gallery`].
     #[arg(short, long = "out", alias = "output", value_name = "FILE")]
     output: Option<PathBuf>,
     /// Width and height in pixels [default: 512x512; 960x720 with `--all` or `--comparisons`].

@@ -72,7 +72,6 @@ const RULES: &[(&[&[&str]], Meaning)] = &[
     (&[&["aspect"]], Meaning::Aspect),
     (&[&["mouse", "cursor", "pointer", "date"]], Meaning::Number(0.0)),
     (&[LIGHT, &["count", "num", "number"]], Meaning::Number(1.0)),
-    (&[&["num", "count"], LIGHT], Meaning::Number(1.0)),
     (&[LIGHT, &["ambient"]], Meaning::Number(0.2)),
     (&[LIGHT, COLOR], WHITE),
     (&[LIGHT, &["specular", "radiance", "energy"]], WHITE),

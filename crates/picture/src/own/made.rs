@@ -58,51 +58,44 @@ pub fn made_vertex(fragment: &Reflection, flat: bool) -> Result<ReadyStage, Diag
     Ok(ReadyStage { validated, entry: "vs_main", reflection, text, functions })
 }
 
-/// A triangle that covers the picture. `uv` counts from its upper left.
-fn flat_text(fragment: &Reflection) -> String {
-    let (outputs, lines) = given_inputs(fragment);
-    format!(
-        "struct Given {{
+/// The stage of a triangle that covers the picture. `uv` counts from its upper left. Words in capitals
+/// are replaced.
+const FLAT: &str = "struct Given {
     @builtin(position) clip: vec4f,
-{outputs}}}
+OUTPUTS}
 @vertex
-fn vs_main(@builtin(vertex_index) index: u32) -> Given {{
+fn vs_main(@builtin(vertex_index) index: u32) -> Given {
     let corner = vec2f(vec2u((index << 1u) & 2u, index & 2u));
     let position = vec4f(corner * 2.0 - 1.0, 0.0, 1.0);
     let uv = vec4f(corner.x, 1.0 - corner.y, 0.0, 1.0);
     var given: Given;
     given.clip = position;
-{lines}    return given;
-}}
-"
-    )
+LINES    return given;
 }
+";
 
-fn model_text(fragment: &Reflection) -> String {
-    let (group, [camera, object, around]) = free_places(fragment);
-    let (outputs, lines) = given_inputs(fragment);
-    format!(
-        "struct Camera {{
+/// The stage of a model.
+const MODEL: &str = "struct Camera {
     clip_from_world: mat4x4f,
     world_from_view: mat4x4f,
-}}
-struct Object {{
+}
+struct Object {
     world_from_object: mat4x4f,
     normal_from_object: mat4x4f,
     color: vec4f,
-}}
-struct Around {{
+}
+struct Around {
     view_from_world: mat4x4f,
     light_from_world: mat4x4f,
     lamp: vec4f,
     eye: vec4f,
-}}
-@group({group}) @binding({camera}) var<uniform> camera: Camera;
-@group({group}) @binding({object}) var<uniform> object: Object;
-@group({group}) @binding({around}) var<uniform> around: Around;
-struct Given {{
+}
+@group(GROUP) @binding(CAMERA) var<uniform> camera: Camera;
+@group(GROUP) @binding(OBJECT) var<uniform> object: Object;
+@group(GROUP) @binding(AROUND) var<uniform> around: Around;
+struct Given {
     @builtin(position) clip: vec4f,
-{outputs}}}
+OUTPUTS}
 @vertex
 fn vs_main(
     @location(0) place: vec3f,
@@ -110,7 +103,7 @@ fn vs_main(
     @location(2) tint: vec3f,
     @location(3) st: vec2f,
     @location(5) along: vec4f,
-) -> Given {{
+) -> Given {
     let position = object.world_from_object * vec4f(place, 1.0);
     let normal = vec4f(normalize((object.normal_from_object * vec4f(outwards, 0.0)).xyz), 0.0);
     let turned = object.world_from_object * vec4f(along.xyz, 0.0);
@@ -130,10 +123,25 @@ fn vs_main(
     let depth = vec4f(-seen_position.z);
     var given: Given;
     given.clip = camera.clip_from_world * position;
-{lines}    return given;
-}}
-"
-    )
+LINES    return given;
+}
+";
+
+fn flat_text(fragment: &Reflection) -> String {
+    let (outputs, lines) = given_inputs(fragment);
+    FLAT.replace("OUTPUTS", &outputs).replace("LINES", &lines)
+}
+
+fn model_text(fragment: &Reflection) -> String {
+    let (group, [camera, object, around]) = free_places(fragment);
+    let (outputs, lines) = given_inputs(fragment);
+    MODEL
+        .replace("GROUP", &group.to_string())
+        .replace("CAMERA", &camera.to_string())
+        .replace("OBJECT", &object.to_string())
+        .replace("AROUND", &around.to_string())
+        .replace("OUTPUTS", &outputs)
+        .replace("LINES", &lines)
 }
 
 /// The outputs of the vertex stage, and the statements that write them.

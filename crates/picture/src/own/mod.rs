@@ -38,7 +38,7 @@ pub use values::{GivenValue, UniformValue, parse_value};
 
 use std::collections::BTreeMap;
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
@@ -134,60 +134,40 @@ pub fn prepare_own(
     shot: &Shot,
 ) -> Result<OwnPicture, Diagnostics> {
     let ground = ground_of(stages, request);
-    let fallback;
-    let scene = match &request.scene {
-        Some(scene) => scene,
-        None => {
-            fallback = models::default_scene();
-            &fallback
-        }
-    };
-    let clip = stages.vertex.as_ref().unwrap_or(&stages.fragment).clip;
+    let usual = models::default_scene();
+    let scene = request.scene.as_ref().unwrap_or(&usual);
     let bound = BoundStages::new(stages, request, shot)?;
+    let clip = stages.vertex.as_ref().unwrap_or(&stages.fragment).clip;
     let mut around = around_of(scene.eye, &scene.lamps, clip, request.time, shot);
     around.seen_normals = bound.has_model_view();
-    let is_upside_down = stages.is_for_opengl();
-    let turned = match is_upside_down {
-        true => DMat4::from_scale(glam::DVec3::new(1.0, -1.0, 1.0)),
-        false => DMat4::IDENTITY,
-    };
     let (vertex, camera) = match &stages.vertex {
         None => made_stage(&stages.fragment.ready, &ground)?,
         Some(vertex) => placed_stage(stages, &vertex.ready)?,
     };
-    let mut eye = PassCamera::of_viewer(&scene.eye, shot);
-    let background = Background::backdrop(eye);
-    eye.clip_from_world = match &stages.vertex {
-        None => turned * eye.clip_from_world,
-        Some(_) => turned,
-    };
     let objects = ground_objects(&ground, scene);
-    let items = objects.iter().map(|object| {
+    let item = |object: &Object| {
         let around = around.of_object(object);
         let mut buffers = bound.buffers(&around)?;
         if stages.vertex.is_none() {
             buffers.extend(made_buffers(&vertex, object, &around)?);
         }
         Ok((ground_mesh(&ground, stages, object, &vertex), buffers))
-    });
-    let items: Vec<(Mesh, Buffers)> = items.collect::<Result<_, Diagnostics>>()?;
-    let first = objects.first().map_or_else(|| around.clone(), |object| around.of_object(object));
-    let mut rows = input_rows(stages);
-    let (own_rows, notes) = bound.rows(&first);
-    rows.extend(own_rows);
-    let (fixtures, levels) = (bound.fixtures.clone(), bound.levels.clone());
-    let state = PipelineState {
-        depth_test: matches!(ground, Ground::Model),
-        mirrored: is_upside_down,
-        ..PipelineState::default()
     };
+    let items: Vec<(Mesh, Buffers)> =
+        objects.iter().map(item).collect::<Result<_, Diagnostics>>()?;
+    let first = objects.first().map_or_else(|| around.clone(), |object| around.of_object(object));
+    let (rows, notes) = bound.rows(&first);
+    let rows = input_rows(stages).into_iter().chain(rows).collect();
+    let is_upside_down = stages.is_for_opengl();
+    let is_flat = !matches!(ground, Ground::Model);
+    let (eye, background) = viewer(stages, scene, shot);
     let pass = PreparedPass {
         stages: Stages { vertex, fragment: Some(stages.fragment.ready.clone()) },
         items,
-        buffers: bound.shared.clone(),
-        fixtures,
-        levels,
-        state,
+        buffers: bound.shared,
+        fixtures: bound.fixtures,
+        levels: bound.levels,
+        state: state_of(is_flat, is_upside_down),
         plain: Vec::new(),
         camera,
         eye,
@@ -196,8 +176,26 @@ pub fn prepare_own(
         fine: 1,
         farther: Vec::new(),
     };
-    let is_flat = !matches!(ground, Ground::Model);
     Ok(OwnPicture { pass, rows, notes, is_flat, is_upside_down })
+}
+
+fn state_of(is_flat: bool, is_upside_down: bool) -> PipelineState {
+    PipelineState { depth_test: !is_flat, mirrored: is_upside_down, ..PipelineState::default() }
+}
+
+/// The matrix that the positions of the vertex stage are multiplied with, and what is behind
+/// everything. An own stage has its own projection, so only the turn of the picture is left.
+fn viewer(stages: &OwnStages, scene: &Scene, shot: &Shot) -> (PassCamera, Background) {
+    let eye = PassCamera::of_viewer(&scene.eye, shot);
+    let turned = match stages.is_for_opengl() {
+        true => DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)),
+        false => DMat4::IDENTITY,
+    };
+    let clip_from_world = match &stages.vertex {
+        None => turned * eye.clip_from_world,
+        Some(_) => turned,
+    };
+    (PassCamera { clip_from_world, ..eye }, Background::backdrop(eye))
 }
 
 impl OwnPicture {

@@ -1,5 +1,6 @@
 //! The options for a shader of the user's own.
 
+use clap::builder::RangedI64ValueParser;
 use clap::{Args, ValueEnum};
 
 use crate::bundle::SourceClip;
@@ -32,7 +33,7 @@ pub struct OwnArguments {
     pub colors: Option<Colors>,
     /// How many vertices a vertex stage makes that only reads their index [default: the length of its
     /// longest array of vectors, else 3].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=i64::from(MOST_VERTICES)))]
+    #[arg(long, value_name = "N", value_parser = vertex_range())]
     pub vertices: Option<u32>,
     /// The API that a shader in GLSL is written for: `opengl`, `vulkan`, `webgpu`, or `auto`, which is
     /// `opengl` for versions below 4.50 without features of Vulkan, else `webgpu`.
@@ -75,6 +76,10 @@ impl OwnArguments {
         ];
         given.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
     }
+}
+
+fn vertex_range() -> RangedI64ValueParser<u32> {
+    clap::value_parser!(u32).range(3..=i64::from(MOST_VERTICES))
 }
 
 fn parse_uniform(text: &str) -> Result<(String, UniformValue), String> {
