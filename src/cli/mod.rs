@@ -182,7 +182,8 @@ fn start_threads() {
 }
 
 fn run_arguments() -> ExitCode {
-    let matches = described_command().try_get_matches();
+    let arguments = eval::options_first(std::env::args_os().collect());
+    let matches = described_command().try_get_matches_from(arguments);
     let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => return print_usage(&error),

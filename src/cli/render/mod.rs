@@ -46,7 +46,7 @@ pub struct Arguments {
     /// The program that draws the picture [default: that of the preset, or `forward`].
     #[arg(long, value_name = "NAME")]
     program: Option<String>,
-    /// The scene [default: the scene of the preset, or `casters`].
+    /// The scene (`lamplight list scenes`) [default: the scene of the preset, or `casters`].
     #[arg(long, value_name = "NAME")]
     scene: Option<String>,
     /// Draw this model instead of a scene: a glTF file (`.glb`, or `.gltf` with the files beside it).
@@ -367,7 +367,8 @@ fn find_program<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, F
     programs.manifest().program(name).ok_or_else(|| unknown_name("program", name, known))
 }
 
-/// The error about an unknown name, with the nearest name, or with all names if there are few.
+/// The error about an unknown name, with the nearest name, with all names if there are few, or with
+/// the command that lists them.
 fn unknown_name<'a>(
     what: &str,
     name: &str,
@@ -379,7 +380,10 @@ fn unknown_name<'a>(
         None if known.clone().count() <= FEW => {
             format!("\nhelp: there are {}", known.collect::<Vec<_>>().join(", "))
         }
-        None => String::new(),
+        None => match what {
+            "preset" | "program" => format!("\nhelp: `lamplight list {what}s` lists them"),
+            _ => "\nhelp: `lamplight list scenes` lists scenes".to_owned(),
+        },
     };
     Failure::input(format!("there is no {what} `{name}`{hint}"))
 }

@@ -1,6 +1,6 @@
 //! What the stages ask for, and what they get: uniforms, textures, samplers and buffers.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use lamplight_bundle::{Binding, BindingKind, Member};
@@ -30,6 +30,8 @@ const UNIFORM_BYTES: u32 = 64 << 10;
 const STORAGE_BYTES: u32 = 16 << 20;
 /// Bytes that a storage buffer has beyond what is declared, for an array without a length.
 const BEYOND: u32 = 1 << 10;
+/// How many rows back an earlier element of the same array is looked for.
+const NEAR: usize = 64;
 /// The most rows of uniforms in a table.
 const ROWS: usize = 200;
 
@@ -222,13 +224,13 @@ impl<'s> BoundStages<'s> {
 
     /// The rows of uniforms and textures, and what else a person has to know.
     pub fn rows(&self, around: &Around<'_>) -> (Vec<Row>, Vec<String>) {
-        let mut rows: Vec<Row> = Vec::new();
+        let (mut rows, mut known) = (Vec::new(), BTreeSet::new());
         for bound in self.bound.iter().filter(|one| one.binding.kind == BindingKind::Uniform) {
             for (_, leaf) in leaves_of(bound) {
                 let (_, value, from) = self.leaf_value(bound, &leaf, around);
                 let (name, ty) = (leaf.path, short_type(&leaf.ty));
                 let row = Row { kind: RowKind::Uniform, name, ty, value, from };
-                if !rows.contains(&row) {
+                if known.insert(row.name.clone()) {
                     rows.push(row);
                 }
             }
@@ -264,7 +266,7 @@ fn merged_elements(rows: Vec<Row>) -> Vec<Row> {
     for row in rows {
         let own = parts(&row);
         let earlier = own.as_ref().and_then(|(before, index, after)| {
-            merged.iter_mut().find(|(kept, count)| {
+            merged.iter_mut().rev().take(NEAR).find(|(kept, count)| {
                 let is_next = |(first_before, first, first_after): (String, u32, String)| {
                     (&first_before, &first_after) == (before, after) && first + *count == *index
                 };

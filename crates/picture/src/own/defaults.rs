@@ -167,7 +167,7 @@ pub fn default_numbers(
     }
     let meaning = uniform_meaning(block, name, ty)?;
     let index = path.split(['[', ']']).nth(1).and_then(|index| index.parse().ok()).unwrap_or(0);
-    let numbers = meaning_numbers(meaning, ty, index, around, is_negated(path));
+    let numbers = meaning_numbers(meaning, ty, index, around, &|| is_negated(path));
     let numbers: Vec<f64> =
         numbers.into_iter().map(|one| if ty.is_integer { one.floor() } else { one }).collect();
     let text = numbers_text(&numbers);
@@ -179,7 +179,7 @@ fn meaning_numbers(
     ty: NumberType,
     index: usize,
     around: &Around<'_>,
-    is_negated: bool,
+    is_negated: &dyn Fn() -> bool,
 ) -> Vec<f64> {
     let [width, height] = around.size.map(f64::from);
     let one = |number: f64| [number; 4];
@@ -204,7 +204,7 @@ fn meaning_numbers(
         Meaning::Far => one(around.eye.far),
         Meaning::FieldOfView => one(around.eye.fov_y),
         Meaning::LightPosition => place(lamp.position),
-        Meaning::LightDirection => direction(if is_negated { lamp.axis() } else { -lamp.axis() }),
+        Meaning::LightDirection => direction(if is_negated() { lamp.axis() } else { -lamp.axis() }),
         Meaning::LightPower => one(0.6 * lamp.reach().powi(2)),
         Meaning::Number(number) => {
             DVec3::splat(number).extend(if number == 0.0 { 0.0 } else { 1.0 }).to_array()

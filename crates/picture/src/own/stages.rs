@@ -131,7 +131,7 @@ fn points(texts: &[OwnText]) -> impl Iterator<Item = (&OwnText, &naga::EntryPoin
         .flat_map(|text| text.validated.module.entry_points.iter().map(move |one| (text, one)))
 }
 
-fn names_of<'t>(texts: &'t [OwnText], stage: Option<ShaderStage>) -> Vec<&'t str> {
+fn names_of(texts: &[OwnText], stage: Option<ShaderStage>) -> Vec<&str> {
     let found = points(texts).filter(|(_, point)| stage.is_none_or(|stage| point.stage == stage));
     found.map(|(_, point)| point.name.as_str()).collect()
 }
@@ -229,6 +229,7 @@ fn fix_overrides(validated: &mut Validated, name: &str) -> Result<(), Diagnostic
         let point = Some((stage, name));
         naga::back::pipeline_constants::process_overrides(module, info, point, &none)
             .map(|(module, info)| (module.into_owned(), info.into_owned()))
+            .map_err(Box::new)
     });
     let (module, info) = fixed.map_err(|error| {
         let message = format!("an `override` has no value: {error}");
