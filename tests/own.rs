@@ -291,7 +291,7 @@ fn refused() -> Outcome {
         (
             wgsl("@vertex fn v() -> @builtin(position) vec4f { return vec4f(1.0); }
                   @fragment fn f(@location(1) uv: vec2f) -> @location(0) vec4f { return uv.xyxy; }".into()),
-            "`f` takes `uv` at location 1, where `v` returns nothing",
+            "the fragment stage `f` takes `uv` at location 1, where the vertex stage `v` returns nothing",
         ),
         (
             wgsl("@group(0) @binding(0) var<storage, read_write> rows: array<f32>;

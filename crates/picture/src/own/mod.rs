@@ -183,17 +183,18 @@ fn state_of(is_flat: bool, is_upside_down: bool) -> PipelineState {
     PipelineState { depth_test: !is_flat, mirrored: is_upside_down, ..PipelineState::default() }
 }
 
+/// A sky is drawn at the far plane itself, where only a test that lets equal depths pass shows it. So
+/// all depths of an author's stage are a little smaller.
+const BEFORE_FAR: f64 = 1.0 - 1e-5;
+
 /// The matrix that the positions of the vertex stage are multiplied with, and what is behind
 /// everything. An own stage has its own projection, so only the turn of the picture is left.
 fn viewer(stages: &OwnStages, scene: &Scene, shot: &Shot) -> (PassCamera, Background) {
     let eye = PassCamera::of_viewer(&scene.eye, shot);
-    let turned = match stages.is_for_opengl() {
-        true => DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)),
-        false => DMat4::IDENTITY,
-    };
+    let up = if stages.is_for_opengl() { -1.0 } else { 1.0 };
     let clip_from_world = match &stages.vertex {
-        None => turned * eye.clip_from_world,
-        Some(_) => turned,
+        None => DMat4::from_scale(DVec3::new(1.0, up, 1.0)) * eye.clip_from_world,
+        Some(_) => DMat4::from_scale(DVec3::new(1.0, up, BEFORE_FAR)),
     };
     (PassCamera { clip_from_world, ..eye }, Background::backdrop(eye))
 }

@@ -269,14 +269,16 @@ fn check_between(vertex: &OwnStage, fragment: &OwnStage) -> Result<(), Diagnosti
         let message = match given {
             Some(output) if output.ty == input.ty => continue,
             Some(Varying { ty, .. }) => format!(
-                "`{}` takes `{name}` as {} at location {place}, where `{}` returns {}",
+                "the fragment stage `{}` takes `{name}` as {} at location {place}, where the vertex \
+                 stage `{}` returns {}",
                 fragment.name,
                 super::shape::short_type(&input.ty),
                 vertex.name,
                 super::shape::short_type(ty)
             ),
             None => format!(
-                "`{}` takes `{name}` at location {place}, where `{}` returns nothing",
+                "the fragment stage `{}` takes `{name}` at location {place}, where the vertex stage \
+                 `{}` returns nothing",
                 fragment.name, vertex.name
             ),
         };
