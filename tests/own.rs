@@ -126,6 +126,30 @@ const CASES: &[Case] = &[
         linear: false,
         expected: |x, y| [255.0 * x / 16.0, 255.0 * (1.0 - y / 16.0), 63.75],
     },
+    // Both stages have push constants, which are two buffers here.
+    Case {
+        name: "glsl for Vulkan",
+        texts: &[
+            (
+                Some(Stage::Vertex),
+                "#version 450
+                 layout(location = 0) in vec2 inPos;
+                 layout(push_constant) uniform Place { vec2 shift; } place;
+                 void main() { gl_Position = vec4(inPos + place.shift, 0.0, 1.0); }",
+            ),
+            (
+                Some(Stage::Fragment),
+                "#version 450
+                 layout(location = 0) out vec4 colour;
+                 layout(push_constant) uniform Shade { layout(offset = 16) vec3 tint; } shade;
+                 void main() { colour = vec4(shade.tint, 1.0); }",
+            ),
+        ],
+        uniforms: &[("tint", "0,0.5,1")],
+        model: None,
+        linear: true,
+        expected: |_, _| [0.0, encoded(0.5), 255.0],
+    },
     // The square of clip space, with v from the bottom, as OpenGL has it.
     Case {
         name: "glsl with both stages",

@@ -23,6 +23,9 @@ pub struct Around<'a> {
     /// Whether the matrix for normals leads to view space, as where the stage knows only the product
     /// of model and view.
     pub seen_normals: bool,
+    /// Whether the matrix of the model leads to view space, as where the stage knows a projection and
+    /// no view.
+    pub seen_model: bool,
 }
 
 /// The light where a model has none: above the viewer, to the right.
@@ -78,7 +81,8 @@ pub fn around_of<'a>(
     shot: &Shot,
 ) -> Around<'a> {
     let (world_from_object, size) = (DMat4::IDENTITY, shot.size);
-    Around { eye, lamps, world_from_object, clip, time, size, seen_normals: false }
+    let (seen_normals, seen_model) = (false, false);
+    Around { eye, lamps, world_from_object, clip, time, size, seen_normals, seen_model }
 }
 
 #[cfg(test)]
@@ -100,6 +104,7 @@ pub mod tests {
             time: 1.5,
             size: [64, 32],
             seen_normals: false,
+            seen_model: false,
         }
     }
 }

@@ -12,7 +12,7 @@ use lamplight_scenes::sets::TextureMap;
 
 use super::around::Around;
 use super::defaults::default_numbers;
-use super::matrices::is_model_view;
+use super::matrices::{is_model_view, lacks_view};
 use super::shape::{NumberType, short_type};
 use super::stages::{OwnStage, OwnStages};
 use super::table::{Origin, Row, RowKind, numbers_text};
@@ -177,13 +177,17 @@ impl<'s> BoundStages<'s> {
         Ok(())
     }
 
-    /// Whether a stage knows the product of model and view, and not the two.
-    pub fn has_model_view(&self) -> bool {
-        let leaves = || self.bound.iter().flat_map(leaves_of).map(|(_, leaf)| leaf);
-        leaves().any(|leaf| {
-            let name = leaf.path.rsplit('.').next().unwrap_or_default();
-            leaf.ty.starts_with("mat4") && is_model_view(name)
-        })
+    /// Whether the matrices of the stages take normals to view space, and whether that of the model
+    /// leads there.
+    pub fn seen_matrices(&self) -> (bool, bool) {
+        let leaves: Vec<Leaf> =
+            self.bound.iter().flat_map(leaves_of).map(|(_, leaf)| leaf).collect();
+        let names = leaves
+            .iter()
+            .filter(|leaf| leaf.ty.starts_with("mat4"))
+            .map(|leaf| leaf.path.rsplit('.').next().unwrap_or_default());
+        let lacks_view = lacks_view(names.clone());
+        (names.clone().any(is_model_view) || lacks_view, lacks_view)
     }
 
     /// The uniform buffers of an object.
@@ -228,6 +232,9 @@ impl<'s> BoundStages<'s> {
         for bound in self.bound.iter().filter(|one| one.binding.kind == BindingKind::Uniform) {
             for (_, leaf) in leaves_of(bound) {
                 let (_, value, from) = self.leaf_value(bound, &leaf, around);
+                if is_padding(bound, &leaf.path) {
+                    continue;
+                }
                 let (name, ty) = (leaf.path, short_type(&leaf.ty));
                 let row = Row { kind: RowKind::Uniform, name, ty, value, from };
                 if known.insert(row.name.clone()) {
@@ -253,6 +260,12 @@ impl<'s> BoundStages<'s> {
         rows.extend(self.texture_rows.iter().cloned());
         (rows, notes)
     }
+}
+
+/// Whether a member only fills a gap that GLSL's layout leaves.
+fn is_padding(bound: &Bound<'_>, path: &str) -> bool {
+    let name = path.rsplit('.').next().unwrap_or(path);
+    bound.stage.is_glsl && name.starts_with("before_")
 }
 
 /// Elements of an array that got the same are one row.

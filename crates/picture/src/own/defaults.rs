@@ -123,6 +123,7 @@ const RULES: &[(&[&[&str]], Meaning)] = &[
     ),
     (&[&["threshold", "mix", "blend", "softness", "smoothness"]], Meaning::Number(0.5)),
     (&[STRENGTH], Meaning::Number(1.0)),
+    (&[&["r", "g", "b", "red", "green", "blue"]], Meaning::Number(0.8)),
 ];
 
 /// What a vector means whose only word is this one.

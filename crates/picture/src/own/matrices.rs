@@ -37,6 +37,16 @@ pub fn is_model_view(name: &str) -> bool {
     has(MODEL) && has(VIEW) && !has(PROJECTION) && !has(NORMAL) && !has(INVERSE)
 }
 
+/// Whether matrices of these names leave out the view: there is a projection and a model, and nothing
+/// in between.
+pub fn lacks_view<'n>(names: impl Iterator<Item = &'n str> + Clone) -> bool {
+    let has = |name: &str, known: &[&str]| has_word(&name_words(name), known);
+    let is_step = |name: &str| has(name, PROJECTION) && !has(name, MODEL) && !has(name, LIGHT);
+    let is_other = |name: &str| has(name, VIEW) || has(name, &["from"]);
+    let mut all = names.clone();
+    all.any(is_step) && names.clone().any(|name| has(name, MODEL)) && !names.clone().any(is_other)
+}
+
 /// The numbers of a matrix, column by column, and what it is. `None` if its name says nothing.
 pub fn matrix_numbers(
     block: &str,
@@ -72,6 +82,8 @@ fn named_matrix(words: &[String], around: &Around<'_>) -> Option<NamedMatrix> {
     if !steps.contains(&true) && !whole {
         return None;
     }
+    // Without a matrix of the view, that of the model leads there.
+    let steps = [steps[0], steps[1] || steps[0] && around.seen_model, steps[2]];
     let taken: Vec<usize> = (0..3).filter(|step| whole || steps[*step]).collect();
     Some(product(&taken, is_inverse, around))
 }
@@ -133,7 +145,7 @@ fn space_of(word: &str) -> Option<Space> {
 mod tests {
     use glam::{DMat3, DMat4, DVec3};
 
-    use super::{is_model_view, matrix_numbers};
+    use super::{is_model_view, lacks_view, matrix_numbers};
     use crate::own::around::Around;
     use crate::own::around::tests::sample;
     use crate::own::shape::NumberType;
@@ -179,6 +191,15 @@ mod tests {
         let expected = DMat3::from_mat4(view * model).inverse().transpose().to_cols_array();
         let found = found.map(|(numbers, _)| numbers).unwrap_or_default();
         assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9) && found.len() == 9);
+        let seen = Around { seen_model: true, ..around.clone() };
+        let found = matrix_numbers("ubo", "model", NumberType::of("mat4x4<f32>"), &seen);
+        assert_eq!(
+            found.map(|(numbers, _)| numbers),
+            Some((view * model).to_cols_array().to_vec())
+        );
+        assert!(lacks_view(["projection", "model"].into_iter()));
+        assert!(!lacks_view(["projection", "view", "model"].into_iter()));
+        assert!(!lacks_view(["uMVP", "model"].into_iter()));
         assert!(is_model_view("modelViewMatrix") && !is_model_view("uMVP"));
         assert_eq!(matrix_numbers("", "wobble", NumberType::of("mat4x4<f32>"), &around), None);
         Ok(())

@@ -139,7 +139,7 @@ pub fn prepare_own(
     let bound = BoundStages::new(stages, request, shot)?;
     let clip = stages.vertex.as_ref().unwrap_or(&stages.fragment).clip;
     let mut around = around_of(scene.eye, &scene.lamps, clip, request.time, shot);
-    around.seen_normals = bound.has_model_view();
+    (around.seen_normals, around.seen_model) = bound.seen_matrices();
     let (vertex, camera) = match &stages.vertex {
         None => made_stage(&stages.fragment.ready, &ground)?,
         Some(vertex) => placed_stage(stages, &vertex.ready)?,

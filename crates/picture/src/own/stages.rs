@@ -114,12 +114,13 @@ pub fn choose_stages(texts: &[OwnText], entries: &[String]) -> Result<OwnStages,
     check_names(texts, entries)?;
     let fragment = one_of(texts, entries, ShaderStage::Fragment).map_err(|error| vec![error])?;
     let Some((text, name)) = fragment else { return Err(vec![no_fragment(texts)]) };
-    let fragment = ready_stage(text, &name, "fs_main")?;
+    let mut fragment = ready_stage(text, &name, "fs_main")?;
     check_outputs(&fragment).map_err(|error| vec![error])?;
     let vertex = one_of(texts, entries, ShaderStage::Vertex).map_err(|error| vec![error])?;
     let vertex = vertex.map(|(text, name)| ready_stage(text, &name, "vs_main")).transpose()?;
     if let Some(vertex) = &vertex {
         check_between(vertex, &fragment).map_err(|error| vec![error])?;
+        separate_numbered(vertex, &mut fragment);
         check_shared(vertex, &fragment).map_err(|error| vec![error])?;
     }
     Ok(OwnStages { vertex, fragment })
@@ -287,30 +288,69 @@ fn check_between(vertex: &OwnStage, fragment: &OwnStage) -> Result<(), Diagnosti
     Ok(())
 }
 
-/// Two stages of separate files must not bind different things to one place.
-fn check_shared(vertex: &OwnStage, fragment: &OwnStage) -> Result<(), Diagnostic> {
+/// The bindings at one place that differ in both stages.
+fn clashes(vertex: &OwnStage, fragment: &OwnStage) -> Vec<(u32, u32)> {
     let find = |reflection: &Reflection, place| {
         reflection.bindings.iter().find(|one| (one.group, one.binding) == place).cloned()
     };
-    for (place, span) in &vertex.places {
+    let differ = |place: &(u32, u32)| {
         let both =
             (find(&vertex.ready.reflection, *place), find(&fragment.ready.reflection, *place));
-        let (Some(one), Some(other)) = both else { continue };
+        let (Some(one), Some(other)) = both else { return false };
         let is_buffer = matches!(one.kind, BindingKind::Uniform | BindingKind::Storage);
-        let same = one.kind == other.kind
-            && if is_buffer { one.size == other.size } else { one.ty == other.ty };
-        if !same {
-            let (group, binding) = place;
-            let message = format!(
-                "`{}` and `{}` are both at group {group}, binding {binding}",
-                one.name, other.name
-            );
-            let error = refused(&message).at(*span, "the vertex stage has this there");
-            return Err(match fragment.places.get(place) {
-                Some(span) => error.at(*span, "the fragment stage has this"),
-                None => error,
-            });
+        one.kind != other.kind
+            || if is_buffer { one.size != other.size } else { one.ty != other.ty }
+    };
+    vertex.places.keys().copied().filter(differ).collect()
+}
+
+/// Moves what GLSL has in two files under numbers that it did not choose, such as push constants.
+fn separate_numbered(vertex: &OwnStage, fragment: &mut OwnStage) {
+    if !fragment.is_glsl {
+        return;
+    }
+    for place in clashes(vertex, fragment) {
+        let taken = vertex.ready.reflection.bindings.iter();
+        let taken = taken.chain(&fragment.ready.reflection.bindings);
+        let free = taken.map(|one| one.binding + 1).max().unwrap_or(0);
+        let mut validated = Validated::clone(&fragment.ready.validated);
+        for (_, variable) in validated.module.global_variables.iter_mut() {
+            if let Some(binding) = &mut variable.binding
+                && (binding.group, binding.binding) == place
+            {
+                binding.binding = free;
+            }
+        }
+        fragment.ready.validated = Arc::new(validated);
+        for binding in &mut fragment.ready.reflection.bindings {
+            if (binding.group, binding.binding) == place {
+                binding.binding = free;
+            }
+        }
+        if let Some(span) = fragment.places.remove(&place) {
+            fragment.places.insert((place.0, free), span);
         }
     }
-    Ok(())
+}
+
+/// Two stages of separate files must not bind different things to one place.
+fn check_shared(vertex: &OwnStage, fragment: &OwnStage) -> Result<(), Diagnostic> {
+    let Some(place) = clashes(vertex, fragment).into_iter().next() else { return Ok(()) };
+    let name = |stage: &OwnStage| {
+        let mut all = stage.ready.reflection.bindings.iter();
+        let found = all.find(|one| (one.group, one.binding) == place);
+        found.map_or(String::new(), |one| one.name.clone())
+    };
+    let (group, binding) = place;
+    let (one, other) = (name(vertex), name(fragment));
+    let message = format!("`{one}` and `{other}` are both at group {group}, binding {binding}");
+    let mut error = refused(&message);
+    let labels =
+        [(vertex, "the vertex stage has this there"), (fragment, "the fragment stage has this")];
+    for (stage, label) in labels {
+        if let Some(span) = stage.places.get(&place) {
+            error = error.at(*span, label);
+        }
+    }
+    Err(error)
 }
