@@ -165,7 +165,7 @@ impl Job<'_> {
         };
         let (rows, mut notes) = (prepared.rows, prepared.notes);
         notes.extend(report::plain_picture(&picture));
-        notes.extend(self.unused_partner());
+        notes.extend(self.unused_partner().filter(|_| texts.len() == 1));
         let seconds = start.elapsed().as_secs_f64();
         Ok(Drawn { picture, rows, notes, model, colors, seconds })
     }
