@@ -4,6 +4,7 @@ mod checks;
 mod compile;
 mod package;
 mod reload;
+mod render;
 mod roots;
 mod same_bytes;
 mod shaders;
@@ -22,6 +23,7 @@ pub fn tests() -> Vec<Trial> {
         checks::CASES,
         compile::CASES,
         reload::CASES,
+        render::CASES,
         roots::CASES,
         same_bytes::CASES,
         shaders::CASES,

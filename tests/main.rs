@@ -46,6 +46,7 @@ mod migrate;
 mod new;
 mod oracles;
 mod outputs;
+mod own;
 mod packages;
 mod pipelines;
 mod plain;
@@ -104,6 +105,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     new::tests,
     oracles::tests,
     outputs::tests,
+    own::tests,
     packages::tests,
     pipelines::tests,
     plain::tests,

@@ -1,5 +1,6 @@
 //! `lamplight eval EXPR`: values of expressions over the library's functions.
 
+use std::ffi::OsString;
 use std::io::{BufRead, Write, stdin};
 use std::sync::Mutex;
 
@@ -30,6 +31,35 @@ pub struct Arguments {
     /// Expressions [default: one a line from standard input].
     #[arg(value_name = "EXPR", allow_hyphen_values = true)]
     expressions: Vec<String>,
+}
+
+/// The options of `eval` that take a value.
+const VALUED: [&str; 5] = ["--lang", "--executor", "--root", "--diagnostics", "--color"];
+
+/// The arguments with those options first that follow an expression. Expressions may begin with a
+/// minus, so nothing after the first one would be read as an option. None begins with two: WGSL has no
+/// such operator, and what follows `--` stays where it is.
+pub fn options_first(arguments: Vec<OsString>) -> Vec<OsString> {
+    if arguments.get(1).is_none_or(|command| command != "eval") {
+        return arguments;
+    }
+    let (mut options, mut rest) = (Vec::new(), Vec::new());
+    let mut left = arguments.into_iter();
+    let head: Vec<OsString> = left.by_ref().take(2).collect();
+    while let Some(argument) = left.next() {
+        let text = argument.to_string_lossy().into_owned();
+        if text == "--" {
+            rest.push(argument);
+            break;
+        }
+        if !text.starts_with("--") {
+            rest.push(argument);
+            continue;
+        }
+        options.push(argument);
+        options.extend(VALUED.contains(&text.as_str()).then(|| left.next()).flatten());
+    }
+    head.into_iter().chain(options).chain(rest).chain(left).collect()
 }
 
 pub fn run_eval(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
@@ -84,6 +114,28 @@ fn print_value(
             writeln!(stdout())?;
             print_warnings(&sources.into_inner().unwrap_or_default(), &diagnostics, form);
             Ok(false)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::options_first;
+
+    #[test]
+    fn options_after_expressions() {
+        let ordered = |line: &str| {
+            let all = options_first(line.split(' ').map(Into::into).collect());
+            all.iter().map(|one| one.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
+        };
+        for (line, expected) in [
+            ("lamplight eval 1+1 --executor vulkan", "lamplight eval --executor vulkan 1+1"),
+            ("lamplight eval -1 --lang=glsl -2", "lamplight eval --lang=glsl -1 -2"),
+            ("lamplight eval --help", "lamplight eval --help"),
+            ("lamplight eval -- --1 --lang glsl", "lamplight eval -- --1 --lang glsl"),
+            ("lamplight list scenes --json", "lamplight list scenes --json"),
+        ] {
+            assert_eq!(ordered(line), expected);
         }
     }
 }

@@ -101,8 +101,12 @@ const ENTRIES: &[HelpEntry] = &[
     guide_entry("catalogue", FIRST, &["lamplight catalogue -o catalogue"]),
     guide_entry(
         "render",
-        FIRST,
-        &["lamplight render hpg_4_spot --executor eval --size 32x32 -o spot.png"],
+        "A picture of your shader",
+        &[
+            "lamplight render shaders/lamp.wesl --executor eval",
+            "lamplight render shaders/lamp.wesl --model torus --watch",
+            "lamplight render hpg_4_spot --executor eval --size 32x32 -o spot.png",
+        ],
     ),
     guide_entry("probe", "In an engine", &["lamplight probe studio"]),
     guide_entry("mutate", CASES, &[]),

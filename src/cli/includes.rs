@@ -42,6 +42,7 @@ uniform vec3 iChannelResolution[4];
 uniform vec4 iMouse;
 uniform vec4 iDate;
 uniform float iSampleRate;
+uniform float iGlobalTime;
 uniform sampler2D iChannel0;
 uniform sampler2D iChannel1;
 uniform sampler2D iChannel2;

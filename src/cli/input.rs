@@ -19,7 +19,7 @@ use crate::resolve::{self, Graph};
 use crate::source::{SourceId, SourceSet, Span};
 
 /// How a root module is read and what is chosen of it.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct InputArguments {
     /// The package's root directory [default: from the nearest wesl.toml or lamplight.toml, else
     /// the file's folder].
@@ -161,6 +161,8 @@ pub struct ErrorContext {
     pub conventions: Conventions,
     /// Lines with the numbers that GLSL leaves open, if the other stage is known.
     pub numbers: String,
+    /// The file of the other stage, by its path in the package, if it is known.
+    pub partner: Option<String>,
     permutation: Option<String>,
 }
 
@@ -271,8 +273,8 @@ impl InputArguments {
             Some(file) => Some(project::relative(file, root).map_err(|error| vec![error])?),
             None => chosen.partner.take(),
         };
-        let numbers = match partner {
-            Some(partner) => self.numbers(project, &graph, path, &partner)?,
+        let numbers = match &partner {
+            Some(partner) => self.numbers(project, &graph, path, partner)?,
             None => String::new(),
         };
         let mut composed = compose::compose(&graph, &chosen.settings, &options)
@@ -285,7 +287,8 @@ impl InputArguments {
         composed.warnings = project.packages.warnings.clone();
         composed.warnings.append(&mut chosen.warnings);
         let ChosenSettings { settings, conventions, permutation, .. } = chosen;
-        let context = ErrorContext { graph, settings, options, conventions, numbers, permutation };
+        let context =
+            ErrorContext { graph, settings, options, conventions, numbers, partner, permutation };
         Ok((composed, context))
     }
 
@@ -320,6 +323,51 @@ impl InputArguments {
         Ok(if other == Stage::Fragment { vertex } else { fragment })
     }
 
+    /// The file of the other stage that is asked for.
+    pub fn partner(&self) -> Option<&Path> {
+        self.with.as_deref()
+    }
+
+    /// The same choices for a module that has all its stages.
+    pub fn for_file(&self) -> Self {
+        Self { with: None, ..self.clone() }
+    }
+
+    /// Whether files are wrapped, so that they are shaders of a site.
+    pub fn wraps(&self) -> bool {
+        self.includes.wraps()
+    }
+
+    /// The same choices for the file of the other stage. `partner` is the first file, which is no
+    /// partner of a module in WESL: that has all stages.
+    pub fn for_partner(&self, partner: Option<&Path>) -> Self {
+        Self { with: partner.map(Path::to_owned), stage: None, ..self.clone() }
+    }
+
+    /// The permutation that `--set` chooses.
+    pub fn chosen_axes(&self) -> &[(String, Setting)] {
+        &self.set
+    }
+
+    /// The same choices with another permutation.
+    pub fn with_axes(&self, set: Vec<(String, Setting)>) -> Self {
+        Self { set, ..self.clone() }
+    }
+
+    /// Whether something is asked for that only a file of the user's has.
+    pub fn is_about_file(&self) -> bool {
+        self.root.is_some()
+            || self.stage.is_some()
+            || self.with.is_some()
+            || !self.feature.is_empty()
+            || self.includes.wraps()
+    }
+
+    /// The root of the package that a file belongs to.
+    pub fn package_root(&self, file: &Path) -> PathBuf {
+        self.root_of(file)
+    }
+
     /// The stage that is asked for.
     fn stage(&self) -> Option<Stage> {
         let wrapped = self.includes.wraps().then_some(Stage::Fragment);
@@ -337,7 +385,7 @@ impl InputArguments {
     }
 
     /// The language asked for, or else what the extension says.
-    fn language(&self, file: &Path) -> Result<Language, Failure> {
+    pub fn language(&self, file: &Path) -> Result<Language, Failure> {
         let extension = file.extension().unwrap_or_default().to_string_lossy();
         match (self.lang, &*extension) {
             (Some(name), _) => Ok(name.into()),

@@ -16,6 +16,7 @@ use crate::emit::targets;
 use crate::execute::executors;
 use crate::permute::{Manifest, Program, Setting};
 use crate::project;
+use crate::scene::sets;
 use crate::source::SourceSet;
 
 /// List functions, programs, presets, targets and more, of the library and of your own package.
@@ -41,6 +42,7 @@ enum What {
     Programs,
     Axes,
     Presets,
+    Scenes,
     Probes,
     Targets,
     Executors,
@@ -73,6 +75,7 @@ pub fn run_list(arguments: Arguments) -> Result<(), Failure> {
         What::Programs => program_table(all_programs(&arguments.own)?),
         What::Axes => axis_table(&all_programs(&arguments.own)?),
         What::Presets => preset_table()?,
+        What::Scenes => scene_table(),
         What::Probes => probe_table()?,
         What::Targets => target_table(),
         What::Executors => executor_table(),
@@ -159,6 +162,11 @@ fn preset_table() -> Result<ListTable, Failure> {
         .map_err(|problems| Failure::Input(sources, problems))?;
     let things = presets.iter().map(super::show::preset_json).collect();
     Ok(ListTable { shown: &["preset", "program", "scene", "key"], things })
+}
+
+fn scene_table() -> ListTable {
+    let things = sets::ALL.iter().map(|set| json!({ "scene": set.name, "summary": set.about }));
+    ListTable { shown: &["scene", "summary"], things: things.collect() }
 }
 
 fn probe_table() -> Result<ListTable, Failure> {

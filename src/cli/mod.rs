@@ -111,7 +111,7 @@ impl Command {
         let names = match self {
             Self::Check(arguments) => arguments.executor.as_slice(),
             Self::Eval(arguments) => std::slice::from_ref(&arguments.executor),
-            Self::Render(arguments) => std::slice::from_ref(&arguments.executor),
+            Self::Render(arguments) => arguments.executor.as_slice(),
             _ => &[],
         };
         names.iter().filter_map(|name| executors::find_executor(name)).collect()
@@ -182,7 +182,8 @@ fn start_threads() {
 }
 
 fn run_arguments() -> ExitCode {
-    let matches = described_command().try_get_matches();
+    let arguments = eval::options_first(std::env::args_os().collect());
+    let matches = described_command().try_get_matches_from(arguments);
     let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => return print_usage(&error),

@@ -45,6 +45,32 @@ pub fn write_data(bytes: &[u8]) -> io::Result<()> {
     }
 }
 
+/// Writes a picture in the form of a terminal, with its control characters. Only what
+/// `picture::terminal` made of pixels is written here.
+pub fn write_picture(text: &str) -> io::Result<()> {
+    let mut out = io::stdout();
+    out.write_all(text.as_bytes())?;
+    out.flush()
+}
+
+/// How many columns the terminal has; 80 if nothing says so.
+pub fn columns() -> u32 {
+    const USUAL: u32 = 80;
+    let told = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    told.filter(|columns| *columns > 0).or_else(terminal_columns).unwrap_or(USUAL)
+}
+
+#[cfg(target_os = "linux")]
+fn terminal_columns() -> Option<u32> {
+    let size = rustix::termios::tcgetwinsize(io::stdout()).ok()?;
+    Some(u32::from(size.ws_col)).filter(|columns| *columns > 0)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn terminal_columns() -> Option<u32> {
+    None
+}
+
 /// Flushes standard output.
 pub fn flush_stdout() -> io::Result<()> {
     io::stdout().flush()

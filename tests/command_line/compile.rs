@@ -8,6 +8,7 @@ use super::{Case, Outcome};
 pub const CASES: &[Case] = &[
     ("stages_have_files_of_their_own", stages),
     ("targets_that_can", targets_that_can),
+    ("compile_without_a_target", without_target),
     ("both_stages_of_a_program", both_stages),
     ("include_folders_and_definitions", include_folders),
     ("wrapped_shaders", wrapped),
@@ -33,6 +34,15 @@ const BOTH: &str = "import package::half::half;
 @vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(half(1.0)); }
 @fragment fn fs_main() -> @location(0) vec4f { return vec4f(half(2.0)); }\n";
 const HALF: &str = "fn half(x: f32) -> f32 { return 0.5 * x; }\n";
+
+/// `compile FILE` checks the file and prints it as WGSL.
+fn without_target() -> Outcome {
+    let package = Package::new(&[("lit.frag", FRAG), ("wrong.frag", "void main() { x; }\n")])?;
+    let run = package.run("compile lit.frag")?.ends(0)?;
+    equal(run.out.contains("@fragment") && run.out.contains("fn main()"), true)?;
+    package.run("compile wrong.frag")?.ends(1)?.says(&["wrong.frag:1:"])?;
+    Ok(())
+}
 
 /// Two stages of one name are written to different files, in every target.
 fn stages() -> Outcome {

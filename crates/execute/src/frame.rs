@@ -11,8 +11,8 @@ use super::fixture::{Fixture, FixtureSampler, FixtureTexture};
 /// Triangles. The attributes of a vertex are interleaved.
 #[derive(Debug, Clone, Default)]
 pub struct Mesh {
-    /// Without attributes the mesh is one triangle, which the vertex stage makes from the vertex
-    /// index.
+    /// Without attributes the vertex stage makes the triangles from the vertex index: one triangle,
+    /// or those of the indices.
     pub attributes: Vec<VertexAttribute>,
     /// Words of every vertex, attribute after attribute.
     pub words: Vec<u32>,
@@ -31,6 +31,13 @@ pub struct VertexAttribute {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VertexFormat {
     Uint32,
+    Uint32x2,
+    Uint32x3,
+    Uint32x4,
+    Sint32,
+    Sint32x2,
+    Sint32x3,
+    Sint32x4,
     Float32,
     Float32x2,
     Float32x3,
@@ -41,10 +48,19 @@ impl VertexFormat {
     /// How many words of 32 bits it has.
     pub fn words(self) -> u32 {
         match self {
-            Self::Uint32 | Self::Float32 => 1,
-            Self::Float32x2 => 2,
-            Self::Float32x3 => 3,
-            Self::Float32x4 => 4,
+            Self::Uint32 | Self::Sint32 | Self::Float32 => 1,
+            Self::Uint32x2 | Self::Sint32x2 | Self::Float32x2 => 2,
+            Self::Uint32x3 | Self::Sint32x3 | Self::Float32x3 => 3,
+            Self::Uint32x4 | Self::Sint32x4 | Self::Float32x4 => 4,
+        }
+    }
+
+    /// Whether its numbers are integers, and whether those have a sign.
+    pub fn integers(self) -> Option<bool> {
+        match self {
+            Self::Uint32 | Self::Uint32x2 | Self::Uint32x3 | Self::Uint32x4 => Some(false),
+            Self::Sint32 | Self::Sint32x2 | Self::Sint32x3 | Self::Sint32x4 => Some(true),
+            Self::Float32 | Self::Float32x2 | Self::Float32x3 | Self::Float32x4 => None,
         }
     }
 }
@@ -170,7 +186,7 @@ impl Mesh {
     /// How many vertices there are.
     pub fn vertices(&self) -> u32 {
         if self.attributes.is_empty() {
-            3
+            self.indices.iter().max().map_or(3, |last| last.saturating_add(1))
         } else {
             (self.words.len() as u64 * 4 / self.stride().max(4)) as u32
         }

@@ -45,6 +45,7 @@ mod lamps;
 mod light;
 mod mesh;
 pub mod needs;
+pub mod own;
 mod passes;
 mod pixels;
 mod plan;
@@ -52,6 +53,7 @@ mod prepared;
 mod probes;
 pub mod sketch;
 pub mod strip;
+pub mod terminal;
 mod textures;
 mod values;
 

@@ -310,6 +310,13 @@ impl Picture {
         found.and_then(|found| found.try_into().ok()).unwrap_or_default()
     }
 
+    /// The picture with its rows in the other order.
+    #[must_use]
+    pub fn upside_down(&self) -> Self {
+        let rows = self.pixels.chunks(3 * self.width.max(1) as usize).rev();
+        Self { pixels: rows.flatten().copied().collect(), ..*self }
+    }
+
     /// Puts another picture over this one.
     pub fn place(&mut self, other: &Self, [left, top]: [u32; 2]) {
         for (index, color) in other.pixels.as_chunks::<3>().0.iter().enumerate() {

@@ -196,7 +196,7 @@ fn as_color(depths: &[f32], [width, height]: [u32; 2]) -> FixtureTexture {
     FixtureTexture { kind: TextureKind::Color2d, width, height, texels }
 }
 
-fn cube_texture(map: &CubeMap) -> FixtureTexture {
+pub(crate) fn cube_texture(map: &CubeMap) -> FixtureTexture {
     let texels = map
         .texels
         .iter()
@@ -223,7 +223,7 @@ fn table_texture(bytes: &[u8]) -> FixtureTexture {
     FixtureTexture { kind: TextureKind::Color2d, width: side, height: side, texels }
 }
 
-fn color_textures(levels: Vec<TextureMap>) -> Vec<FixtureTexture> {
+pub(crate) fn color_textures(levels: Vec<TextureMap>) -> Vec<FixtureTexture> {
     let color = |map: TextureMap| FixtureTexture {
         kind: TextureKind::Color2d,
         width: map.width as u32,

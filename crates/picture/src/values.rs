@@ -372,12 +372,16 @@ impl UniformValues<'_> {
 
 /// The projection of the viewer.
 pub(super) fn eye_projection(eye: &Eye, shot: &Shot) -> DMat4 {
-    let [width, height] = shot.size;
+    eye_projection_for(eye, shot.size, Clip::Wgpu)
+}
+
+/// The same for a picture of a size and a clip space.
+pub(super) fn eye_projection_for(eye: &Eye, [width, height]: [u32; 2], clip: Clip) -> DMat4 {
     let aspect = f64::from(width) / f64::from(height.max(1));
     // A picture that is higher than wide still shows everything that a square one shows.
     let fov =
         if aspect < 1.0 { 2.0 * ((0.5 * eye.fov_y).tan() / aspect).atan() } else { eye.fov_y };
-    perspective(fov, aspect, eye.near, eye.far, Clip::Wgpu, Depth::Normal)
+    perspective(fov, aspect, eye.near, eye.far, clip, Depth::Normal)
 }
 
 fn projected_light(surroundings: &Surroundings) -> [[f64; 3]; 9] {

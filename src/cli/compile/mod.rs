@@ -33,7 +33,6 @@ pub struct Arguments {
     input: InputArguments,
     #[arg(help = target::wanted_help())]
     #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
-    #[arg(required_unless_present = "reflection")]
     target: Vec<TargetChoice>,
     #[command(flatten)]
     conventions: ConventionArguments,
@@ -57,7 +56,7 @@ pub struct Arguments {
 }
 
 pub fn run_compile(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    let targets = wanted_targets(&arguments.target);
+    let targets = arguments.targets();
     let mut made: Vec<OutputFile> = Vec::new();
     let mut failed: Option<Failure> = None;
     let mut sources = SourceSet::default();
@@ -128,6 +127,15 @@ fn compile_file(
 }
 
 impl Arguments {
+    /// The targets that are asked for; WGSL, where nothing else is, so that a file can be checked
+    /// without a choice.
+    fn targets(&self) -> Vec<Target> {
+        match self.target.is_empty() && !self.reflection {
+            true => vec![Target::WGSL],
+            false => wanted_targets(&self.target),
+        }
+    }
+
     /// The targets that are left out if they lack what a shader needs.
     fn optional(&self) -> Vec<Target> {
         let is_all = self.target.iter().any(|choice| matches!(choice, TargetChoice::All));

@@ -13,7 +13,7 @@ pub enum TargetChoice {
 /// The help of an option that names targets.
 pub fn wanted_help() -> String {
     let names: Vec<&str> = Target::ALL.iter().map(|target| target.name()).collect();
-    format!("Output languages: {}, or all of them", names.join(", "))
+    format!("Output languages: {}, or all of them [default: wgsl]", names.join(", "))
 }
 
 /// `all`, or a target.

@@ -2,6 +2,7 @@
 
 mod gallery;
 mod model;
+mod own;
 mod several;
 
 use std::io::Write;
@@ -13,7 +14,7 @@ use clap::Args;
 
 use super::executor;
 use super::failure::{DiagnosticForm, Failure};
-use super::input::{LanguageName, axis_value};
+use super::input::InputArguments;
 use super::overwrite::Overwrite;
 use super::terminal::{self, stdout};
 use crate::LIBRARY_FILES;
@@ -27,7 +28,7 @@ use crate::limits::ENVIRONMENT_BYTES;
 use crate::model::View;
 use crate::output;
 use crate::permute::manifest::Program;
-use crate::permute::{Assignment, Quoted, Setting, key};
+use crate::permute::{Assignment, Quoted, key};
 use crate::picture::beside;
 use crate::picture::frame::Programs;
 use crate::picture::gallery::SAMPLES;
@@ -35,27 +36,26 @@ use crate::picture::strip::{self, Comparison};
 use crate::picture::{self, Picture, Plan, Shot, Surroundings, is_own_png};
 use crate::scene::{ENVIRONMENTS, Equirect, sets};
 
-/// Draw a picture of a preset, a permutation or your own model.
+/// Draw a shader of your own, a preset, a permutation or your own model.
 #[derive(Args, Clone)]
 pub struct Arguments {
-    /// A preset: one published example (`lamplight list presets`); or a comparison, such as
-    /// `shadow_filters`.
+    /// A shader of your own, in WESL, WGSL or GLSL; or a preset: one published example (`lamplight
+    /// list presets`); or a comparison, such as `shadow_filters`.
+    #[arg(value_name = "FILE|PRESET")]
     preset: Option<String>,
-    /// Choose an axis's value, instead of the preset's.
-    #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = axis_value)]
-    set: Vec<(String, Setting)>,
     /// The program that draws the picture [default: that of the preset, or `forward`].
     #[arg(long, value_name = "NAME")]
     program: Option<String>,
-    /// The scene [default: the scene of the preset, or `casters`].
+    /// The scene (`lamplight list scenes`) [default: the scene of the preset, or `casters`].
     #[arg(long, value_name = "NAME")]
     scene: Option<String>,
     /// Draw this model instead of a scene: a glTF file (`.glb`, or `.gltf` with the files beside it).
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "all"])]
+    /// A shader of your own is also drawn on `sphere`, `torus`, `cube`, `vase`, `plane`, or a scene.
+    #[arg(long, value_name = "FILE|NAME", conflicts_with_all = ["scene", "all"])]
     model: Option<PathBuf>,
     /// The view of the model: the number of one of its cameras, or the positions of the eye and of
     /// the point that it looks at [default: its first camera, or a position that shows all of it].
-    #[arg(long, value_name = "N|X,Y,Z,X,Y,Z", requires = "model", value_parser = model::parse_view,
+    #[arg(long, value_name = "N|X,Y,Z,X,Y,Z", value_parser = model::parse_view,
         allow_hyphen_values = true)]
     camera: Option<View>,
     /// Draw every preset, with pages that show them.
@@ -68,8 +68,8 @@ pub struct Arguments {
     #[arg(long, requires = "preset", conflicts_with_all = ["set", "program", "scene", "model", "camera",
         "all", "comparisons", "cascades"])]
     beside: bool,
-    /// The file of the picture [default: the name of the preset, or `render.png`]; with `--all` and
-    /// `--comparisons`, a folder [default: `gallery`].
+    /// The file of the picture [default: the name of the preset or the shader, or `render.png`];
+    /// with `--all` and `--comparisons`, a folder [default: `gallery`].
     #[arg(short, long = "out", alias = "output", value_name = "FILE")]
     output: Option<PathBuf>,
     /// Width and height in pixels [default: 512x512; 960x720 with `--all` or `--comparisons`].
@@ -87,18 +87,27 @@ pub struct Arguments {
     /// The number of cascades, the shadow maps of a directional light.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
     cascades: u32,
-    /// The executor that draws; `eval` needs no driver.
-    #[arg(long, value_name = "E", default_value = "vulkan")]
-    pub executor: String,
-    /// The source language.
-    #[arg(long, value_enum, default_value = "wesl")]
-    lang: LanguageName,
+    /// The executor that draws; `eval` needs no driver [default: `vulkan`; where there is none, a
+    /// shader of your own is drawn by `eval`].
+    #[arg(long, value_name = "E")]
+    pub executor: Option<String>,
     /// The environment: `studio`, `daylight`, `dusk`, `parlour`, `checks`, `constant`, or a
     /// Radiance file (`.hdr`) [default: that of the scene, else `studio`].
     #[arg(long, value_name = "NAME|FILE")]
     environment: Option<String>,
     #[command(flatten)]
     overwrite: Overwrite,
+    #[command(flatten)]
+    own: own::OwnArguments,
+    #[command(flatten, next_help_heading = "How sources are read")]
+    input: InputArguments,
+}
+
+/// The executor that draws where nothing else is asked for.
+const EXECUTOR: &str = "vulkan";
+
+fn chosen_executor(arguments: &Arguments) -> Result<&'static ExecutorEntry, Failure> {
+    executor::find_drawing(arguments.executor.as_deref().unwrap_or(EXECUTOR))
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
@@ -118,16 +127,20 @@ fn parse_stops(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number".to_owned())
 }
 
-pub fn run_render(arguments: Arguments, _: DiagnosticForm) -> Result<(), Failure> {
-    on_thread(|| draw_picture(&arguments))
+pub fn run_render(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    on_thread(|| draw_picture(&arguments, form))
         .unwrap_or_else(|| Err(Failure::environment(stopped_message("the renderer"))))
 }
 
-fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {
+fn draw_picture(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    let entry = chosen_executor(arguments)?;
+    let shot = make_shot(arguments, entry)?;
+    if let Some(file) = own::own_file(arguments) {
+        return own::draw_own(arguments, file, &shot, form);
+    }
+    refuse_own(arguments)?;
     let programs = Programs::load(LIBRARY_FILES)
         .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
-    let entry = executor::find_drawing(&arguments.executor)?;
-    let shot = make_shot(arguments, entry)?;
     if arguments.all || arguments.comparisons {
         let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("gallery"));
         let folder = output::OutputFolder::open(&folder, arguments.overwrite.replace())?;
@@ -160,6 +173,22 @@ fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {
     )?)
 }
 
+/// Refuses what only a shader of the user's own can have.
+fn refuse_own(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.camera.is_some() && arguments.model.is_none() {
+        return Err(Failure::usage("`--camera` needs `--model`, or a shader of your own"));
+    }
+    let given = arguments.own.given().map(str::to_owned);
+    let given = given
+        .or_else(|| arguments.input.is_about_file().then(|| "an option for sources".to_owned()));
+    match given {
+        Some(option) => {
+            Err(Failure::usage(format!("`{option}` is for a shader of your own: name its file")))
+        }
+        None => Ok(()),
+    }
+}
+
 /// What is drawn: a model, or a scene of ours.
 fn make_plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
     let Some(mut own) = model::read_model(arguments)? else {
@@ -174,7 +203,11 @@ fn make_plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure
 
 /// Writes the picture where it is asked for.
 fn write_picture(arguments: &Arguments, picture: &Picture) -> Result<PathBuf, Failure> {
-    let name = arguments.preset.as_deref().unwrap_or("render");
+    write_named(arguments, arguments.preset.as_deref().unwrap_or("render"), picture)
+}
+
+/// Writes the picture where it is asked for, or else to a file of this name.
+fn write_named(arguments: &Arguments, name: &str, picture: &Picture) -> Result<PathBuf, Failure> {
     let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
     warn_of_ending(&path);
     let png = picture.png().map_err(Failure::environment)?;
@@ -190,7 +223,7 @@ fn named_comparison(
     let Some(name) = &arguments.preset else { return Ok(None) };
     let found =
         library_comparisons(programs)?.into_iter().find(|comparison| comparison.name == *name);
-    let is_changed = !arguments.set.is_empty()
+    let is_changed = !arguments.input.chosen_axes().is_empty()
         || arguments.program.is_some()
         || arguments.scene.is_some()
         || arguments.cascades > 1;
@@ -248,7 +281,7 @@ fn input_failure(programs: &Programs, problems: Diagnostics) -> Failure {
 fn permutation_plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
     let mut plan = match &arguments.preset {
         Some(name) => of_preset(programs, arguments, name)?,
-        None if arguments.set.is_empty()
+        None if arguments.input.chosen_axes().is_empty()
             && arguments.program.is_none()
             && arguments.scene.is_none()
             && arguments.model.is_none() =>
@@ -285,7 +318,7 @@ fn of_preset(programs: &Programs, arguments: &Arguments, name: &str) -> Result<P
     let preset = &chosen_form(programs, arguments, preset);
     let plan = Plan::of_preset(programs, preset, &probes)
         .map_err(|problems| input_failure(programs, problems))?;
-    if arguments.set.is_empty() && arguments.program.is_none() {
+    if arguments.input.chosen_axes().is_empty() && arguments.program.is_none() {
         return Ok(plan);
     }
     let program = find_program(programs, arguments.program.as_deref().unwrap_or(&preset.program))?;
@@ -305,7 +338,9 @@ fn chosen_form(programs: &Programs, arguments: &Arguments, preset: &Preset) -> P
     let name = arguments.program.as_deref().unwrap_or(&preset.program);
     let has_axis = |program: &Program, axis: &str| program.space.axis(axis).is_some();
     let own = programs.manifest().program(name).filter(|own| own.name == preset.program);
-    let fits = own.is_some_and(|own| arguments.set.iter().all(|(axis, _)| has_axis(own, axis)));
+    let fits = own.is_some_and(|own| {
+        arguments.input.chosen_axes().iter().all(|(axis, _)| has_axis(own, axis))
+    });
     let is_asked = |safe: &Preset| arguments.program.is_none() || safe.program == name;
     let safe = preset.safe_form().filter(|safe| !fits && is_asked(safe));
     safe.unwrap_or_else(|| preset.clone())
@@ -332,7 +367,8 @@ fn find_program<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, F
     programs.manifest().program(name).ok_or_else(|| unknown_name("program", name, known))
 }
 
-/// The error about an unknown name, with the nearest name, or with all names if there are few.
+/// The error about an unknown name, with the nearest name, with all names if there are few, or with
+/// the command that lists them.
 fn unknown_name<'a>(
     what: &str,
     name: &str,
@@ -344,7 +380,10 @@ fn unknown_name<'a>(
         None if known.clone().count() <= FEW => {
             format!("\nhelp: there are {}", known.collect::<Vec<_>>().join(", "))
         }
-        None => String::new(),
+        None => match what {
+            "preset" | "program" => format!("\nhelp: `lamplight list {what}s` lists them"),
+            _ => "\nhelp: `lamplight list scenes` lists scenes".to_owned(),
+        },
     };
     Failure::input(format!("there is no {what} `{name}`{hint}"))
 }
@@ -367,8 +406,12 @@ fn chosen_point(
     program: &Program,
     base: Option<&str>,
 ) -> Result<Assignment, Failure> {
-    let chosen: Vec<String> =
-        arguments.set.iter().map(|(axis, value)| format!("{axis}={value}")).collect();
+    let chosen: Vec<String> = arguments
+        .input
+        .chosen_axes()
+        .iter()
+        .map(|(axis, value)| format!("{axis}={value}"))
+        .collect();
     let mut texts = programs.texts();
     let base = texts.add("preset", base.unwrap_or_default());
     let id = texts.add("--set", chosen.join(","));
@@ -393,7 +436,7 @@ fn make_shot(arguments: &Arguments, executor: &ExecutorEntry) -> Result<Shot, Fa
         samples: arguments.samples.or(samples).unwrap_or(1),
         cascades: arguments.cascades,
         exposure: arguments.exposure.clamp(-32.0, 32.0),
-        language: Language::from(arguments.lang),
+        language: arguments.input.chosen_language().unwrap_or(Language::Wesl),
         surroundings: find_surroundings(arguments.environment.as_deref())?,
     })
 }

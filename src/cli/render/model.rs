@@ -72,7 +72,8 @@ pub fn model_plan(
     let has = |axis: &str, value: &Setting| {
         program.space.axes().iter().any(|own| own.name == axis && own.ordinal(value).is_some())
     };
-    let is_chosen = |axis: &str| arguments.set.iter().any(|(chosen, _)| chosen == axis);
+    let is_chosen =
+        |axis: &str| arguments.input.chosen_axes().iter().any(|(chosen, _)| chosen == axis);
     let own = model.axes.iter().chain(&model.layers);
     let own = own
         .map(String::as_str)
@@ -95,8 +96,8 @@ pub fn model_plan(
     for keeps in kept {
         let (set, left_out): (Vec<&str>, Vec<&str>) = own.iter().partition(|value| keeps(value));
         let set = set.into_iter().filter_map(|value| axis_value(value).ok());
-        let set = set.chain(arguments.set.iter().cloned()).collect();
-        let chosen = Arguments { set, ..arguments.clone() };
+        let set = set.chain(arguments.input.chosen_axes().iter().cloned()).collect();
+        let chosen = Arguments { input: arguments.input.with_axes(set), ..arguments.clone() };
         if let Ok(plan) = super::permutation_plan(programs, &chosen) {
             report_omissions(&[left_out, lacking].concat())?;
             return Ok(plan);

@@ -30,7 +30,8 @@ use crate::project::{self, LIBRARY};
 pub struct Arguments {
     /// An item (`brdf::specular::blinn_phong`), a module (`brdf::specular`), a program
     /// (`forward`), an axis (`forward.shadow`), a preset (`hpg_5_shadow`) or a light probe; your
-    /// own items are below `package`. Any other word is searched for.
+    /// own items are below `package`. The name of an item is enough where no other has it. Any other
+    /// word is searched for.
     path: String,
     /// Print a JSON object.
     #[arg(long)]
@@ -107,6 +108,15 @@ fn find_shown(library: &ShowIndex, path: &str) -> Option<ShownItem> {
         .or_else(|| find_axis(library, path))
         .or_else(preset)
         .or_else(probe)
+        .or_else(|| find_named(library, path))
+}
+
+/// The only item of this name, whatever its module is.
+fn find_named(library: &ShowIndex, name: &str) -> Option<ShownItem> {
+    let items = library.modules.iter().flat_map(|module| &module.items);
+    let mut found = items.filter(|item| item.path().rsplit("::").next() == Some(name));
+    let item = found.next()?;
+    found.next().is_none().then(|| item::show_item(item))
 }
 
 /// `PROGRAM.AXIS`, or the axis alone where one program has it.
@@ -151,8 +161,9 @@ fn missing_path(path: &str, library: &ShowIndex) -> Failure {
         .iter()
         .find(|item| item.rsplit("::").next() == path.rsplit("::").next())
         .map(String::as_str);
-    let hint = same_name
-        .or_else(|| nearest_name(path, known))
-        .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    let hint = same_name.or_else(|| nearest_name(path, known)).map_or_else(
+        || "\nhelp: `lamplight list functions` lists all functions".to_owned(),
+        |near| format!("; did you mean `{near}`?"),
+    );
     Failure::input(format!("the library has no `{path}`{hint}"))
 }

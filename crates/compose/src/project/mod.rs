@@ -287,10 +287,13 @@ fn parse_manifest(
 ) -> Result<Manifest, Diagnostics> {
     let id = source::read(sources, package, name).map_err(|error| vec![error.into()])?;
     let id = id.ok_or_else(|| {
-        vec![Diagnostic::error(
-            codes::UNREADABLE,
-            format!("there is no manifest `{}`", package.files.display(name)),
-        )]
+        vec![
+            Diagnostic::error(
+                codes::UNREADABLE,
+                format!("there is no manifest `{}`", package.files.display(name)),
+            )
+            .note("help: `lamplight init` writes a package that has one"),
+        ]
     })?;
     let mut manifest = manifest::parse(sources, id)?;
     let mut lists: Vec<(String, SourceId)> = Vec::new();

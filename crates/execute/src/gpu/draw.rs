@@ -302,6 +302,13 @@ fn vertex_layout(mesh: &Mesh) -> Vec<wgpu::VertexAttribute> {
     let attribute = |(attribute, offset): (VertexAttribute, u64)| wgpu::VertexAttribute {
         format: match attribute.format {
             VertexFormat::Uint32 => wgpu::VertexFormat::Uint32,
+            VertexFormat::Uint32x2 => wgpu::VertexFormat::Uint32x2,
+            VertexFormat::Uint32x3 => wgpu::VertexFormat::Uint32x3,
+            VertexFormat::Uint32x4 => wgpu::VertexFormat::Uint32x4,
+            VertexFormat::Sint32 => wgpu::VertexFormat::Sint32,
+            VertexFormat::Sint32x2 => wgpu::VertexFormat::Sint32x2,
+            VertexFormat::Sint32x3 => wgpu::VertexFormat::Sint32x3,
+            VertexFormat::Sint32x4 => wgpu::VertexFormat::Sint32x4,
             VertexFormat::Float32 => wgpu::VertexFormat::Float32,
             VertexFormat::Float32x2 => wgpu::VertexFormat::Float32x2,
             VertexFormat::Float32x3 => wgpu::VertexFormat::Float32x3,

@@ -19,7 +19,7 @@ pub struct Watched {
 }
 
 /// The module with a fragment entry point that also returns its inputs. `None` without such an
-/// entry point, or if that does not return four numbers at location 0.
+/// entry point, or if that returns no colour at location 0.
 pub fn watch_entry(module: &Module, entry: &str) -> Option<Watched> {
     let (mut module, index) = (module.clone(), find_entry(module, entry)?);
     let inner = inner_function(&mut module, index)?;
@@ -111,13 +111,14 @@ fn color_bits(
 ) -> Option<KernelValue> {
     let arguments = argument_values(body);
     let ty = body.module.functions[inner].result.as_ref()?.ty;
-    let member = match &body.module.types[ty].inner {
-        TypeInner::Vector { size: VectorSize::Quad, .. } => None,
+    let (member, ty) = match &body.module.types[ty].inner {
         TypeInner::Struct { members, .. } => {
-            Some(members.iter().position(|member| is_color(body.module, member, location))?)
+            let at = members.iter().position(|member| is_color(body.module, member, location))?;
+            (Some(at), members[at].ty)
         }
-        _ => return None,
+        _ => (None, ty),
     };
+    let parts = color_parts(body.module, ty)?;
     let result = body.function.expressions.append(Expression::CallResult(inner), Span::UNDEFINED);
     body.function.body.push(
         Statement::Call { function: inner, arguments, result: Some(result) },
@@ -125,7 +126,31 @@ fn color_bits(
     );
     let index = |index: usize| Expression::AccessIndex { base: result, index: index as u32 };
     let color = member.map_or(result, |member| body.add(index(member)));
-    Some(body.add(Expression::As { expr: color, kind: ScalarKind::Uint, convert: None }))
+    let bits = body.add(Expression::As { expr: color, kind: ScalarKind::Uint, convert: None });
+    Some(if parts == 4 { bits } else { whole_color(body, bits, parts) })
+}
+
+/// How many components a colour has; `None` for what is no colour.
+fn color_parts(module: &Module, ty: Handle<Type>) -> Option<u32> {
+    match module.types[ty].inner {
+        TypeInner::Scalar(_) => Some(1),
+        TypeInner::Vector { size, .. } => Some(size as u32),
+        _ => None,
+    }
+}
+
+/// Four words of fewer: a single number is grey, what else is missing is 0, and alpha is 1.
+fn whole_color(body: &mut FunctionBody<'_>, bits: KernelValue, parts: u32) -> KernelValue {
+    let alpha = body.literal(1.0_f32.to_bits());
+    let mut components: Vec<_> = match parts {
+        1 => vec![bits; 3],
+        _ => (0..parts).map(|index| body.component(bits, index)).collect(),
+    };
+    let zero = body.literal(0);
+    components.resize(3, zero);
+    components.push(alpha);
+    let ty = four_words(body);
+    body.add(Expression::Compose { ty, components })
 }
 
 /// Returns one value of four words at each location.
@@ -159,5 +184,5 @@ fn four_words(body: &mut FunctionBody<'_>) -> Handle<Type> {
 
 fn is_color(module: &Module, member: &StructMember, location: u32) -> bool {
     matches!(member.binding, Some(Binding::Location { location: found, .. }) if found == location)
-        && matches!(module.types[member.ty].inner, TypeInner::Vector { size: VectorSize::Quad, .. })
+        && color_parts(module, member.ty).is_some()
 }

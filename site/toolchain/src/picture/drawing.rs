@@ -57,6 +57,13 @@ fn mesh(item: &frame::DrawItem<'_>) -> Mesh {
         location: attribute.location,
         format: match attribute.format {
             VertexFormat::Uint32 => "uint32",
+            VertexFormat::Uint32x2 => "uint32x2",
+            VertexFormat::Uint32x3 => "uint32x3",
+            VertexFormat::Uint32x4 => "uint32x4",
+            VertexFormat::Sint32 => "sint32",
+            VertexFormat::Sint32x2 => "sint32x2",
+            VertexFormat::Sint32x3 => "sint32x3",
+            VertexFormat::Sint32x4 => "sint32x4",
             VertexFormat::Float32 => "float32",
             VertexFormat::Float32x2 => "float32x2",
             VertexFormat::Float32x3 => "float32x3",

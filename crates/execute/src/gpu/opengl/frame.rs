@@ -10,9 +10,7 @@ use super::{
 };
 use crate::ShippedPair;
 use crate::fixture::Fixture;
-use crate::frame::{
-    BindingPlace, Buffers, DrawItem, Drawing, Frame, Mesh, PipelineState, VertexFormat,
-};
+use crate::frame::{BindingPlace, Buffers, DrawItem, Drawing, Frame, Mesh, PipelineState};
 use crate::gpu::opengl::context::OpenGlApi;
 use crate::kernel::SENTINEL;
 use crate::shipped::{ColorFormat, Shipped};
@@ -268,8 +266,8 @@ unsafe fn bind_attributes(gl: &glow::Context, mesh: &Mesh) -> Result<Option<glow
             let size = attribute.format.words() as i32;
             let (location, offset) = (attribute.location, offset as i32);
             gl.enable_vertex_attrib_array(location);
-            if attribute.format == VertexFormat::Uint32 {
-                let ty = glow::UNSIGNED_INT;
+            if let Some(is_signed) = attribute.format.integers() {
+                let ty = if is_signed { glow::INT } else { glow::UNSIGNED_INT };
                 gl.vertex_attrib_pointer_i32(location, size, ty, stride, offset);
             } else {
                 gl.vertex_attrib_pointer_f32(location, size, glow::FLOAT, false, stride, offset);

@@ -1,0 +1,58 @@
+//! Models that have names: single shapes, and the scenes of the pictures.
+
+use std::f64::consts::FRAC_PI_2;
+
+use glam::{DMat4, DQuat, DVec3};
+
+use lamplight_scenes::Shape;
+use lamplight_scenes::sets::{self, Eye, Material, Object, Scene};
+
+use super::around::LAMP;
+use crate::sketch::MODELS;
+
+/// The model or scene of that name.
+pub fn named_scene(name: &str) -> Option<Scene> {
+    let shape = MODELS.iter().find(|(known, _)| *known == name);
+    shape.map(|(_, shape)| scene_of(shape())).or_else(|| sets::scene(name))
+}
+
+/// The names of models, then those of scenes.
+pub fn model_names() -> impl Iterator<Item = &'static str> + Clone {
+    MODELS.iter().map(|(name, _)| *name).chain(sets::ALL.iter().map(|set| set.name))
+}
+
+/// The sphere, which is drawn where nobody chooses a model.
+pub fn default_scene() -> Scene {
+    scene_of(Shape::sphere(1.0, (96, 48)))
+}
+
+/// A shape of the colour white at the origin.
+pub fn object(shape: Shape) -> Object {
+    Object::made(shape, DMat4::IDENTITY, DVec3::ONE, Material::default())
+}
+
+fn scene_of(shape: Shape) -> Scene {
+    Scene::of_model(vec![object(shape)], eye(), vec![LAMP])
+}
+
+/// The viewer: a little to the left and above, so that a cube shows three of its sides.
+fn eye() -> Eye {
+    let (around, up) = (-0.5, 0.3 * FRAC_PI_2);
+    let turned = DQuat::from_rotation_y(around) * DQuat::from_rotation_x(-up);
+    Eye { position: turned * DVec3::Z * 4.0, target: DVec3::ZERO, fov_y: 0.6, near: 0.5, far: 10.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{model_names, named_scene};
+
+    #[test]
+    fn models_by_name() {
+        for name in ["sphere", "cube", "plane", "torus", "vase", "casters"] {
+            assert!(model_names().any(|known| known == name), "{name}");
+            let scene = named_scene(name);
+            assert!(scene.is_some_and(|scene| !scene.objects.is_empty()), "{name}");
+        }
+        assert!(named_scene("shpere").is_none());
+    }
+}
