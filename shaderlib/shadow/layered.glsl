@@ -24,7 +24,7 @@ const float LEAST_WIDTH = 1e-6;
 /// Parameters: `t` the point's depth, [0, 1]; `bounds` depths between the layers, rising, of which those above 1 end fewer layers.
 /// Returns: 0 to 3.
 /// Source: Lauritzen, McCool, "Layered Variance Shadow Maps", 2008.
-/// Edges: a bound belongs to the layer behind it; bounds that do not rise are counted all the same.
+/// Edges: 0 for a `t` before all of them and 3 for one behind; a bound belongs to the layer behind it; `bounds` that do not rise are counted all the same.
 /// Error model: exact.
 uint lvsm_layer(float t, vec3 bounds) {
     return (t >= bounds.x ? 1u : 0u) + (t >= bounds.y ? 1u : 0u) + (t >= bounds.z ? 1u : 0u);
@@ -37,7 +37,7 @@ uint lvsm_layer(float t, vec3 bounds) {
 /// Parameters: `layer` 0 to 3; `bounds` as for `lvsm_layer`; `overlap` how far the interval reaches beyond its bounds, [0, 1]: some times the root of the least variance, such as 0.02.
 /// Returns: near and far depth, each in [0, 1].
 /// Source: as `lvsm_layer`.
-/// Edges: a `layer` above 3 counts as 3; the first interval begins at 0, the last one ends at 1.
+/// Edges: a `layer` above 3 counts as 3; the first interval begins at 0, the last one ends at 1; `bounds` outside of [0, 1] count as its ends, which a large `overlap` reaches; a negative one leaves gaps between the intervals.
 /// Error model: absolute 2^-23.
 vec2 lvsm_range(uint layer, vec3 bounds, float overlap) {
     uint index = min(layer, 3u);
@@ -51,7 +51,7 @@ vec2 lvsm_range(uint layer, vec3 bounds, float overlap) {
 /// Parameters: `d` depth, [0, 1]; `range` near and far depth of the interval, as of `lvsm_range`.
 /// Returns: [0, 1], rising over the interval.
 /// Source: as `lvsm_layer`: the warp of a layer.
-/// Edges: an interval narrower than 1e-6 counts as that wide.
+/// Edges: a `d` outside of the interval gives 0 or 1; a `range` narrower than 1e-6 counts as that wide.
 /// Error model: absolute 3*2^-23 + 2^-23/(range.y - range.x).
 float lvsm_warp(float d, vec2 range) {
     return clamp((d - range.x) / max(range.y - range.x, LEAST_WIDTH), 0.0, 1.0);
@@ -74,7 +74,7 @@ vec2 lvsm_moments(float d, vec2 range) {
 /// Parameters: `m` filtered `lvsm_moments`; `t` the point's depth, [0, 1]; `range` that of the point's layer, with which the moments were made; `min_variance` least variance, in depth squared; `bleed` share of the bound to cut off, [0, 1).
 /// Returns: Chebyshev's bound in the layer, [0, 1].
 /// Source: as `lvsm_layer`; the least variance is scaled by the slope of the warp.
-/// Edges: 1 for a `t` at the near end of the interval or before it; else as `chebyshev`.
+/// Edges: 1 for a `t` at the near end of the interval or before it; a narrow `range` as for `lvsm_warp`; `m`, `min_variance` and `bleed` as for `chebyshev`.
 /// Error model: that of `chebyshev`, for the warped depth.
 float lvsm_visibility(vec2 m, float t, vec2 range, float min_variance, float bleed) {
     float width = max(range.y - range.x, LEAST_WIDTH);

@@ -39,7 +39,7 @@ vec2 summed_corner(LAMPLIGHT_COLOR_MAP(table, smp), vec2 corner) {
 /// Parameters: `table`, `smp` as for `summed_corner`; `uv` texture coordinates of the middle, [0, 1]; `width` of the square, texels, at least 1; `mean` the mean moments over the map, which the sums are without.
 /// Returns: the two moments, as of a filtered `vsm_moments`.
 /// Source: as `summed_corner`; sums without the mean: Hensley, Scheuermann, Coombe, Singh, Lastra, "Fast Summed-Area Table Generation and its Applications", 2005.
-/// Edges: what is off the map does not count; `uv` and `width` outside their ranges count as their ends.
+/// Edges: what is off the map does not count; `uv` and `width` outside their ranges count as their ends; `mean` is added as it is.
 /// Error model: 2^-7 of the change over a texel, over `width`; and 2^-22 of the largest of the four sums, over the square's texels.
 vec2 summed_moments(LAMPLIGHT_COLOR_MAP(table, smp), vec2 uv, float width, vec2 mean) {
     vec2 size = vec2(textureSize(LAMPLIGHT_COLOR_SAMPLER(table, smp), 0));
@@ -60,7 +60,7 @@ vec2 summed_moments(LAMPLIGHT_COLOR_MAP(table, smp), vec2 uv, float width, vec2 
 /// Parameters: `table`, `smp`, `width` and `mean` as for `summed_moments`; `at` place in the map; `min_variance` least variance, above 0: at least the rounding of the table; `bleed` share of the bound to cut off, [0, 1).
 /// Returns: Chebyshev's bound, [0, 1].
 /// Source: Lauritzen, "Summed-Area Variance Shadow Maps", GPU Gems 3, 2007, chapter 8.
-/// Edges: 1 where `at` is outside; else as `summed_moments` and `chebyshev`.
+/// Edges: 1 where `at` is outside; `width` and `mean` as for `summed_moments`; `min_variance` and `bleed` as for `chebyshev`.
 /// Error model: that of `chebyshev` for the errors of `summed_moments`.
 float savsm(LAMPLIGHT_COLOR_MAP(table, smp), ShadowUv at, float width, vec2 mean, float min_variance, float bleed) {
     if (!at.inside) {
