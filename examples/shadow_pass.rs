@@ -294,12 +294,6 @@ impl Gpu {
         fragment: Option<&Stage>,
         is_map: bool,
     ) -> wgpu::RenderPipeline {
-        // Pushes depths away from the lamp: by twice the slope of a triangle, and by four of the
-        // smallest steps, as in example 7.18 of the OpenGL Programming Guide.
-        let bias = match is_map {
-            true => wgpu::DepthBiasState { constant: 4, slope_scale: 2.0, clamp: 0.0 },
-            false => wgpu::DepthBiasState::default(),
-        };
         // `depth` takes the position alone, from the same buffer.
         let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
         let options =
@@ -320,13 +314,7 @@ impl Gpu {
                 })],
             },
             primitive: Default::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::LessEqual),
-                stencil: Default::default(),
-                bias,
-            }),
+            depth_stencil: Some(depth_state(is_map)),
             multisample: Default::default(),
             fragment: fragment.map(|stage| wgpu::FragmentState {
                 module: &stage.module,
@@ -390,6 +378,22 @@ impl Gpu {
         self.device.poll(wgpu::PollType::wait_indefinitely())?;
         receiver.recv()??;
         Ok(buffer.get_mapped_range(..)?.to_vec())
+    }
+}
+
+/// The depth test, and for the map a bias that pushes depths away from the lamp: by twice the slope of a
+/// triangle, and by four of the smallest steps, as in example 7.18 of the OpenGL Programming Guide.
+fn depth_state(is_map: bool) -> wgpu::DepthStencilState {
+    let bias = match is_map {
+        true => wgpu::DepthBiasState { constant: 4, slope_scale: 2.0, clamp: 0.0 },
+        false => wgpu::DepthBiasState::default(),
+    };
+    wgpu::DepthStencilState {
+        format: DEPTH,
+        depth_write_enabled: Some(true),
+        depth_compare: Some(wgpu::CompareFunction::LessEqual),
+        stencil: Default::default(),
+        bias,
     }
 }
 

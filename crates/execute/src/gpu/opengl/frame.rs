@@ -130,12 +130,7 @@ fn draw_frame(
     unsafe {
         let framebuffer = gl.create_framebuffer()?;
         gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
-        let points: Vec<u32> =
-            (0..targets.len() as u32).map(|index| glow::COLOR_ATTACHMENT0 + index).collect();
-        for (point, target) in points.iter().zip(&targets) {
-            let of = glow::TEXTURE_2D;
-            gl.framebuffer_texture_2d(glow::FRAMEBUFFER, *point, of, Some(*target), 0);
-        }
+        let points = attach_targets(gl, &targets);
         let depths =
             drawing.state.depth_test.then(|| attach_depths(gl, [width, height])).transpose()?;
         gl.draw_buffers(&points);
@@ -166,6 +161,21 @@ fn draw_frame(
         check_error(gl)?;
         Ok(Frame { targets: words, depth: Vec::new(), detour: None })
     }
+}
+
+/// Gives the bound framebuffer its targets; returns their attachment points.
+///
+/// # Safety
+///
+/// The context is current, and a framebuffer is bound.
+unsafe fn attach_targets(gl: &glow::Context, targets: &[glow::Texture]) -> Vec<u32> {
+    let attach = |(target, point): (&glow::Texture, u32)| {
+        let (of, kind) = (glow::FRAMEBUFFER, glow::TEXTURE_2D);
+        // SAFETY: the context is current and a framebuffer is bound.
+        unsafe { gl.framebuffer_texture_2d(of, point, kind, Some(*target), 0) };
+        point
+    };
+    targets.iter().zip(glow::COLOR_ATTACHMENT0..).map(attach).collect()
 }
 
 /// Gives the bound framebuffer depths, all at the far plane, and turns the test on.
