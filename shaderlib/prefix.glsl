@@ -11,6 +11,7 @@
 #define Accum lamplight_Accum
 #define ComplexIor lamplight_ComplexIor
 #define LEAST_ALPHA lamplight_LEAST_ALPHA
+#define LEAST_WIDTH lamplight_LEAST_WIDTH
 #define LIGHT_DIRECTIONAL lamplight_LIGHT_DIRECTIONAL
 #define LIGHT_OFF lamplight_LIGHT_OFF
 #define LIGHT_POINT lamplight_LIGHT_POINT
@@ -178,6 +179,11 @@
 #define ltc_rect(p0, p1, p2, p3, p4) lamplight_ltc_rect(p0, p1, p2, p3, p4)
 #define ltc_uv(p0, p1) lamplight_ltc_uv(p0, p1)
 #define luminance_area(p0, p1) lamplight_luminance_area(p0, p1)
+#define lvsm_layer(p0, p1) lamplight_lvsm_layer(p0, p1)
+#define lvsm_moments(p0, p1) lamplight_lvsm_moments(p0, p1)
+#define lvsm_range(p0, p1, p2) lamplight_lvsm_range(p0, p1, p2)
+#define lvsm_visibility(p0, p1, p2, p3, p4) lamplight_lvsm_visibility(p0, p1, p2, p3, p4)
+#define lvsm_warp(p0, p1) lamplight_lvsm_warp(p0, p1)
 #define march_point(p0, p1, p2, p3, p4, p5) lamplight_march_point(p0, p1, p2, p3, p4, p5)
 #define material_index(p0, p1) lamplight_material_index(p0, p1)
 #define material_index_oglpg(p0, p1) lamplight_material_index_oglpg(p0, p1)
@@ -251,6 +257,7 @@
 #define sample_point(p0, p1) lamplight_sample_point(p0, p1)
 #define sample_spot(p0, p1) lamplight_sample_spot(p0, p1)
 #define saturate_color(p0) lamplight_saturate_color(p0)
+#define savsm(p0, p1, p2, p3, p4, p5) lamplight_savsm(p0, p1, p2, p3, p4, p5)
 #define sdf_soft_smooth(p0) lamplight_sdf_soft_smooth(p0)
 #define sdf_soft_step(p0, p1, p2, p3, p4) lamplight_sdf_soft_step(p0, p1, p2, p3, p4)
 #define sh4_irradiance(p0, p1) lamplight_sh4_irradiance(p0, p1)
@@ -281,6 +288,8 @@
 #define srgb_from_linear(p0) lamplight_srgb_from_linear(p0)
 #define srgb_from_linear_channel(p0) lamplight_srgb_from_linear_channel(p0)
 #define ssao_kernel(p0, p1) lamplight_ssao_kernel(p0, p1)
+#define summed_corner(p0, p1) lamplight_summed_corner(p0, p1)
+#define summed_moments(p0, p1, p2, p3) lamplight_summed_moments(p0, p1, p2, p3)
 #define tonemap_aces(p0) lamplight_tonemap_aces(p0)
 #define tonemap_reinhard(p0) lamplight_tonemap_reinhard(p0)
 #define transmission_roughness(p0, p1) lamplight_transmission_roughness(p0, p1)
@@ -309,6 +318,7 @@
 #undef Accum
 #undef ComplexIor
 #undef LEAST_ALPHA
+#undef LEAST_WIDTH
 #undef LIGHT_DIRECTIONAL
 #undef LIGHT_OFF
 #undef LIGHT_POINT
@@ -476,6 +486,11 @@
 #undef ltc_rect
 #undef ltc_uv
 #undef luminance_area
+#undef lvsm_layer
+#undef lvsm_moments
+#undef lvsm_range
+#undef lvsm_visibility
+#undef lvsm_warp
 #undef march_point
 #undef material_index
 #undef material_index_oglpg
@@ -549,6 +564,7 @@
 #undef sample_point
 #undef sample_spot
 #undef saturate_color
+#undef savsm
 #undef sdf_soft_smooth
 #undef sdf_soft_step
 #undef sh4_irradiance
@@ -579,6 +595,8 @@
 #undef srgb_from_linear
 #undef srgb_from_linear_channel
 #undef ssao_kernel
+#undef summed_corner
+#undef summed_moments
 #undef tonemap_aces
 #undef tonemap_reinhard
 #undef transmission_roughness

@@ -38,6 +38,7 @@ pub fn tests() -> Vec<Trial> {
     let mut tests = vec![
         Trial::test("clients::draw_the_same", draw_the_same),
         Trial::test("clients::mistakes_are_seen", mistakes_are_seen),
+        Trial::test("clients::depth_in_web_gl2", depth_in_web_gl2),
         cmake::test(),
         Trial::test("clients::layouts_fit_their_shaders", layouts::fit),
     ];
@@ -105,8 +106,11 @@ fn drawn_in_c(folder: &Path, client: &Client, first: usize) -> Result<Vec<u8>, F
     Ok(std::fs::read(folder.join("out.bin"))?)
 }
 
+/// The files of the clients in a browser.
+const SERVED: [&str; 4] = ["scene.mjs", "web_gpu.mjs", "web_gl2.mjs", "lit.lamplight"];
+
 /// What a client in a browser draws.
-fn drawn_by_web(folder: &Path, module: &str) -> Result<Vec<u8>, Failed> {
+fn drawn_by_web(folder: &Path, module: &str, served: &[&str]) -> Result<Vec<u8>, Failed> {
     let mut files = BTreeMap::from([(
         "index.html".to_owned(),
         b"<!doctype html><title>t</title><link rel=icon href=data:,>".to_vec(),
@@ -115,8 +119,8 @@ fn drawn_by_web(folder: &Path, module: &str) -> Result<Vec<u8>, Failed> {
         files.insert(name, std::fs::read(path)?);
         Ok(())
     };
-    for name in ["scene.mjs", "web_gpu.mjs", "web_gl2.mjs", "lit.lamplight"] {
-        add(folder.join(name), name.to_owned())?;
+    for name in served {
+        add(folder.join(name), (*name).to_owned())?;
     }
     for file in std::fs::read_dir(root().join("packages/bundle/src"))? {
         let file = file?;
@@ -156,8 +160,8 @@ fn draw_the_same() -> Outcome {
         ("OpenGL ES 3", drawn_in_c(folder.path(), &GLES, 0)?),
         ("Vulkan", drawn_in_c(folder.path(), &VULKAN, 0)?),
         ("wgpu", rust_wgpu::pictures(std::fs::read(folder.path().join("lit.lamplight"))?)?),
-        ("WebGL 2", drawn_by_web(folder.path(), "web_gl2.mjs")?),
-        ("WebGPU", drawn_by_web(folder.path(), "web_gpu.mjs")?),
+        ("WebGL 2", drawn_by_web(folder.path(), "web_gl2.mjs", &SERVED)?),
+        ("WebGPU", drawn_by_web(folder.path(), "web_gpu.mjs", &SERVED)?),
     ];
     for (client, drawn) in &others {
         let counts: Vec<usize> = wanted
@@ -171,6 +175,25 @@ fn draw_the_same() -> Outcome {
         }
     }
     Ok(())
+}
+
+/// The library's `depth` draws a map in WebGL 2, which links no program without a fragment stage: with
+/// its own, and with the one that the adapter adds. A rectangle at the depth 0.5 fills the left half.
+fn depth_in_web_gl2() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    std::fs::copy(root().join("tests/clients/depth.mjs"), folder.path().join("depth.mjs"))?;
+    run(Command::new(LAMPLIGHT)
+        .current_dir(folder.path())
+        .args(["gen", "--no-cache", "--program", "depth", "--target", "essl300"])
+        .args(["-o", "depth.lamplight", "--manifest"])
+        .arg(root().join("shaderlib/lamplight.toml")))?;
+    let drawn = drawn_by_web(folder.path(), "depth.mjs", &["depth.mjs", "depth.lamplight"])?;
+    let half = |index: usize| if index % 8 < 4 { 127..=128 } else { 255..=255 };
+    let is_right = drawn.iter().enumerate().all(|(index, depth)| half(index).contains(depth));
+    if drawn.len() == 2 * 64 && is_right {
+        return Ok(());
+    }
+    Err(format!("{} depths: {drawn:?}", drawn.len()).into())
 }
 
 /// Each mistake changes the last picture, which has everything in it.

@@ -6,6 +6,9 @@ mod hot_reload;
 #[path = "../examples/load_bundle.rs"]
 #[expect(dead_code, reason = "`main` is run by the example alone")]
 mod load_bundle;
+#[path = "../examples/shadow_pass.rs"]
+#[expect(dead_code, reason = "`main` is run by the example alone")]
+mod shadow_pass;
 #[path = "../examples/wesl_crate/main.rs"]
 #[expect(dead_code, reason = "`main` is run by the example alone")]
 mod wesl_crate;
@@ -14,7 +17,8 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use lamplight::bundle::{self, Target};
+use glam::DVec3;
+use lamplight::bundle::{self, Contents, Target};
 use lamplight::generate::{Request, in_memory};
 use lamplight::permute::Quoted;
 use lamplight::project;
@@ -27,6 +31,7 @@ pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("examples::load_bundle", loads_a_bundle),
         Trial::test("examples::hot_reload", swaps_while_it_draws),
+        Trial::test("examples::shadow_pass", shadow_falls_where_rays_say),
         Trial::test("examples::plain_glsl", plain_glsl_compiles),
         Trial::test("examples::readme_glsl", readme_glsl_compiles),
         Trial::test("examples::wesl_crate", wesl_crate_links),
@@ -38,18 +43,7 @@ pub fn tests() -> Vec<Trial> {
 fn loads_a_bundle() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("shaders.lamplight");
-    let (mut sources, manifest) =
-        project::library_manifest().map_err(|(_, problems)| format!("{problems:?}"))?;
-    let id = sources.add("key", "ambient=none,lights=none");
-    let request = Request {
-        program: Some("forward".into()),
-        only: Some(Quoted::whole(&sources, id)),
-        targets: vec![Target::WGSL],
-        ..Request::default()
-    };
-    let made = in_memory(&mut sources, &project::library_packages(), &manifest, &request, &|_| {})
-        .map_err(|problems| format!("{problems:?}"))?;
-    bundle::write_file(&made.contents, &path)?;
+    bundle::write_file(&permutation("forward", "ambient=none,lights=none")?, &path)?;
     let path = path.to_string_lossy().into_owned();
     // Mesa keeps state for each thread. It must be dropped before the process ends.
     let pixel = lamplight::execute::on_thread(|| {
@@ -61,6 +55,79 @@ fn loads_a_bundle() -> Result<(), Failed> {
     } else {
         Err(format!("the pixel is {pixel:?}, not orange").into())
     }
+}
+
+/// One permutation of a program of the library, in WGSL.
+fn permutation(program: &str, key: &str) -> Result<Contents, Failed> {
+    let (mut sources, manifest) =
+        project::library_manifest().map_err(|(_, problems)| format!("{problems:?}"))?;
+    let id = sources.add("key", key);
+    let request = Request {
+        program: Some(program.into()),
+        only: Some(Quoted::whole(&sources, id)),
+        targets: vec![Target::WGSL],
+        ..Request::default()
+    };
+    let made = in_memory(&mut sources, &project::library_packages(), &manifest, &request, &|_| {})
+        .map_err(|problems| format!("{problems:?}"))?;
+    Ok(made.contents)
+}
+
+/// The example draws the shadow of the box where rays to the lamp meet the box, and nowhere else.
+fn shadow_falls_where_rays_say() -> Result<(), Failed> {
+    let opened = |program, key| {
+        let bytes = bundle::pack(&permutation(program, key)?)?;
+        Ok::<_, Failed>(bundle::Bundle::from_bytes(bytes)?)
+    };
+    let (depth, forward) = (opened("depth", "default")?, opened("forward", shadow_pass::KEY)?);
+    let pixels = lamplight::execute::on_thread(|| {
+        shadow_pass::draw(&depth, &forward).map_err(|error| error.to_string())
+    })
+    .ok_or("the example panicked")??;
+    let [width, height] = shadow_pass::SIZE;
+    let (mut lit, mut dark, mut wrong) = (0, 0, Vec::new());
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let Some(is_lit) = lit_by_rays(x, y) else { continue };
+        let green = pixels[(4 * (y * width + x) + 1) as usize];
+        // In shadow there is a tenth of ambient light: 0.075, which is 78 as sRGB.
+        if (green > 120) != is_lit {
+            wrong.push((x, y, green));
+        }
+        lit += usize::from(is_lit);
+        dark += usize::from(!is_lit);
+    }
+    println!("{lit} pixels of the floor are lit, {dark} are in shadow, {} are wrong", wrong.len());
+    if wrong.is_empty() && lit > 4000 && dark > 400 {
+        Ok(())
+    } else {
+        Err(format!("{lit} lit, {dark} in shadow, wrong: {wrong:?}").into())
+    }
+}
+
+/// Whether the lamp shines onto the floor that a pixel shows: `None` for what shows no floor, is near
+/// the rim of the cone, or near the edge of the shadow, where the filter is.
+fn lit_by_rays(x: u32, y: u32) -> Option<bool> {
+    let [width, height] = shadow_pass::SIZE.map(f64::from);
+    let ndc = [2.0 * (f64::from(x) + 0.5) / width - 1.0, 1.0 - 2.0 * (f64::from(y) + 0.5) / height];
+    let back = shadow_pass::clip_from_world().inverse();
+    let at = |depth: f64| back.project_point3(DVec3::new(ndc[0], ndc[1], depth));
+    let (near, far) = (at(0.0), at(1.0));
+    let floor = near.lerp(far, near.y / (near.y - far.y));
+    let axis = -shadow_pass::LAMP.normalize();
+    let in_cone = axis.dot((floor - shadow_pass::LAMP).normalize()) > 28.0_f64.to_radians().cos();
+    if !in_cone || meets_box(near, floor, 0.05) {
+        return None;
+    }
+    let hidden = |margin| meets_box(floor, shadow_pass::LAMP, margin);
+    (hidden(0.08) == hidden(-0.08)).then(|| !hidden(0.0))
+}
+
+/// Whether the way between two points meets the box, which is larger by a margin.
+fn meets_box(from: DVec3, to: DVec3, margin: f64) -> bool {
+    let [low, high] = shadow_pass::BOX;
+    let way = to - from;
+    let (one, other) = ((low - margin - from) / way, (high + margin - from) / way);
+    one.min(other).max_element().max(0.0) < one.max(other).min_element().min(1.0)
 }
 
 /// While `watch` follows an edit of the shader, the example of hot reload prints what the guide's

@@ -4,6 +4,7 @@
 //!
 //! `pcf_random16_hpg` is not here, since it needs a shadow map: see `shadow::random_taps_shift`.
 
+mod compared;
 mod geometry;
 mod hpg;
 mod listing;
@@ -97,6 +98,7 @@ pub fn tests() -> Vec<Trial> {
         .map(|language| {
             Trial::test(format!("published::{language}"), move || forms_differ(language))
         })
+        .chain(compared::tests())
         .chain(listings::tests())
         .chain(page::tests())
         .chain(quantities::tests())

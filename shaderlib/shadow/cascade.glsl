@@ -1,5 +1,9 @@
 //! Which of up to four cascaded shadow maps covers a point.
 //!
+//! Sample distribution shadow maps (Lauritzen, Salvi, Lefohn, 2011) place the splits by the depths that
+//! are seen. Finding these takes passes over the depth buffer, so the library has no such program: an
+//! engine that has the least and the largest depth gives them to `cascade_split` as `near` and `far`.
+//!
 //! Made from `cascade.wesl` by `cargo xtask docs`: edit that, not this file.
 
 #ifndef LAMPLIGHT_SHADOW_CASCADE_GLSL

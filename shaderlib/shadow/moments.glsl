@@ -1,11 +1,8 @@
 //! Visibility from filtered moments of the depth: variance shadow maps, plain and exponential, and
 //! moment shadow maps.
 //!
-//! Summed-area variance shadow maps are not here. Their filter may have another width at each point,
-//! but their sums need a pass of prefix sums and, for large maps, more digits than 32-bit floats have;
-//! `shadow::penumbra` has the width of a filter over a plain depth map instead. Layered variance shadow
-//! maps are not here either. They have a pair of moments for each interval of depths; `evsm_visibility`
-//! and `msm_visibility` remove most of the light bleeding with four channels of one map.
+//! `shadow::summed` filters the moments over rectangles of any size, and `shadow::layered` has moments
+//! of their own for each interval of depths, against light bleeding.
 //!
 //! Made from `moments.wesl` by `cargo xtask docs`: edit that, not this file.
 

@@ -1,6 +1,6 @@
 //! Which triangle each pixel of a picture shows, and where: found in f64 from the vertices.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use lamplight::execute::frame::{Mesh, VertexFormat};
@@ -62,13 +62,16 @@ pub struct Pixels {
     steps: Option<f64>,
     wanted: BTreeMap<u32, Vec<u32>>,
     pub hits: BTreeMap<[u32; 2], Hit>,
+    /// The pixels whose middle is on an edge of a triangle, once corners are moved: which side they
+    /// are on is the rasterizer's choice.
+    pub on_edges: BTreeSet<[u32; 2]>,
 }
 
 impl Pixels {
     pub fn new(size: [u32; 2], steps: Option<f64>, wanted: &[[u32; 2]]) -> Self {
         let mut rows: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         wanted.iter().for_each(|[x, y]| rows.entry(*y).or_default().push(*x));
-        Self { size, steps, wanted: rows, hits: BTreeMap::new() }
+        Self { size, steps, wanted: rows, hits: BTreeMap::new(), on_edges: BTreeSet::new() }
     }
 
     /// Adds the triangles of a mesh, seen through a matrix from its space to clip space.
@@ -115,6 +118,9 @@ impl Pixels {
             let at = DVec2::new(f64::from(pixel[0]) + 0.5, f64::from(pixel[1]) + 0.5);
             let edge = |a: usize, b: usize| (places[b] - places[a]).perp_dot(at - places[a]) / area;
             let flat = DVec3::new(edge(1, 2), edge(2, 0), edge(0, 1));
+            if flat.min_element().abs() < 1e-9 {
+                self.on_edges.insert(pixel);
+            }
             if flat.min_element() < 0.0 {
                 continue;
             }

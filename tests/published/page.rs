@@ -13,6 +13,7 @@ use lamplight::execute::Session;
 use lamplight::picture::{Linear, prepare_passes};
 use libtest_mimic::{Failed, Trial};
 
+use super::compared::table;
 use super::listings::{SIZE, agreement, is_published};
 use super::quantities::{disagreements, published_tables};
 use crate::render::{library, on_device, plan, rendered, shot};
@@ -30,12 +31,39 @@ A pixel agrees if each channel is within 1 % of the model, or of a hundredth of 
 
 The last columns say how far the safe form of the library is from the printed one, as the display shows
 both: the share of the pixels that differ by more than 1 % of white, and the largest difference of a
-channel. `lamplight render PRESET --beside` draws both and their difference. Drivers draw the same
-pictures in both languages in the tests `published::*` and `render/*`, and the outputs for all targets
-in `frames/shipped/published/*`.
+channel. `lamplight render PRESET --beside` draws both and their difference.
 
 | listing | section | numbers | agree | undefined | deviations | safe form: pixels | largest |
 |---|---|---|---|---|---|---|---|
+";
+
+const EXECUTORS: &str = "
+## Where they were compared
+
+The same comparison on other executors: the share of the defined pixels that agree, in per cent, the
+smaller one of both languages. `eval`, `vulkan` and `gl` draw the composed texts. The others draw the
+outputs of a target as they are, which is the first part of their name where it has several executors
+or another name: `webgpu` and `webgl2` in Chromium, `hlsl` by way of glslangValidator, `msl` compiled
+for the CPU. `cargo xtask record published::compared published::page` draws all and writes the table.
+Where a comparison is missing, a row has a red dot, and a test fails. As on the page above, 99.5 % have
+to agree; of `hpg_6_pcf_random` on SwiftShader, which is also that of Chromium here, 99 %. SwiftShader
+moves corners to sixteenths of a pixel: pixels whose middle is then on an edge are not compared.
+
+";
+
+const KEPT: &str = "
+## What `forward` keeps of them
+
+`published` draws the listings, and `forward` has the safe forms. These values of its axes, and of those
+of `deferred` and `depth_view`, are of use for the sources' scenes alone. They stay, since a key that an
+engine has stored keeps its meaning, and their ordinals in `lamplight.lock` are never given away.
+
+| axis and value | came from | other scenes take |
+|---|---|---|
+| `viewer=infinite` | examples 7.3 to 7.11: `EyeDirection` | `viewer=local` |
+| `saturate` | example 7.2 and those after it: the minimum with white | `curve`, or the program `tonemap` |
+| `attenuation=linear_radius` | Newcastle 11 | `attenuation=inverse_square_window` |
+| `curve=igl` of `depth_view` | Igalia II | `curve=linear` |
 ";
 
 /// By day, the pictures of every so many rows are drawn.
@@ -53,10 +81,16 @@ fn on_page() -> Result<(), String> {
         library().presets.iter().filter(|preset| is_published(preset)).collect();
     if std::env::var_os("UPDATE_EXPECT").is_some() {
         let rows = presets.iter().map(|preset| row_of(preset)).collect::<Result<String, _>>()?;
-        return std::fs::write(&file, format!("{HEAD}{rows}")).map_err(|error| error.to_string());
+        let text = format!("{HEAD}{rows}{EXECUTORS}{}{KEPT}", table()?);
+        return std::fs::write(&file, text).map_err(|error| error.to_string());
     }
     let page = std::fs::read_to_string(&file).map_err(|error| error.to_string())?;
     let rows = page.strip_prefix(HEAD).ok_or("the head of docs/published.md is another one")?;
+    let rest = format!("{EXECUTORS}{}{KEPT}", table()?);
+    let rows = rows.strip_suffix(&rest).ok_or(
+        "docs/published.md has another table of executors than tests/published/compared: \
+         cargo xtask record published::page writes it",
+    )?;
     let rows: Vec<&str> = rows.lines().collect();
     if rows.len() != presets.len() {
         return Err(format!("{} rows for {} listings", rows.len(), presets.len()));

@@ -155,6 +155,14 @@ pub struct PipelineState {
     pub offset: [f32; 2],
 }
 
+impl PipelineState {
+    /// Whether nothing differs from the defaults but the depth test.
+    #[cfg(not(target_family = "wasm"))]
+    pub(super) fn is_plain(self) -> bool {
+        self == Self { depth_test: self.depth_test, ..Self::default() }
+    }
+}
+
 /// A side of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Face {

@@ -273,7 +273,8 @@ pub fn markdown_page(cards: &[&Card], strips: &[StripCard]) -> String {
                     that page under `gallery/`.\n\nPictures are coded as sRGB. The listings of the \
                     books write linear numbers to the frame buffer\nas they are: the first ball of \
                     `oglpg_7_1` has the colour (0.82, 0.26, 0.2), which is\n(209, 66, 51) in their \
-                    frame buffers, and (234, 139, 124) here.\n\n\
+                    frame buffers, and (234, 139, 124) here.\n\
+                    [numbers_of_a_frame](#numbers_of_a_frame) shows both.\n\n\
                     [The listings](../published.md) has a row for each listing that is drawn as \
                     printed.\n"
             .to_owned();
@@ -346,6 +347,10 @@ fn write_section(text: &mut String, card: &Card) {
     if let Some(key) = &preset.safe {
         let key = key.replace(',', ", ");
         let _ = writeln!(text, "- safe form: [{SAFE}](../catalogue/programs.md#{SAFE}): `{key}`");
+        let _ = writeln!(
+            text,
+            "- as printed, in the safe form, and the difference: `lamplight render {name} --beside`"
+        );
     }
     let functions: Vec<String> =
         card.functions("..").map(|(name, page)| format!("[{name}]({page})")).collect();

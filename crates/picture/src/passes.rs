@@ -181,7 +181,7 @@ impl Studio<'_> {
             None => vec![Buffers::new()],
         };
         let side = if pass.program == "depth" { light.size } else { (light.size / 2).max(1) };
-        if prepared.stages.fragment.is_none() {
+        if prepared.targets() == 0 {
             let frames = prepared.draw(self.painter, &views, [side; 2], None)?;
             let depths: Vec<_> = frames.into_iter().map(|frame| frame.depth).collect();
             left.map = Some(match light.parts {

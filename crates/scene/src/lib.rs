@@ -9,16 +9,19 @@ mod clusters;
 mod frustum;
 mod kernel;
 mod mesh;
+mod mirror_ball;
 mod probe;
 mod projection;
 pub mod quadrature;
 mod sky;
+mod summed;
 mod view;
 
 pub use clusters::{Cells, ClusterError, Clusters, MOST_CELLS, MOST_INDICES, MOST_LAMPS, Reach};
 pub use frustum::{Bounds, bounding_sphere, cascade_splits, corners, depth_range, fit};
 pub use kernel::gaussian;
 pub use mesh::{MeshError, UNUSED_NORMAL, face_normals, normal_matrix, smooth_normals};
+pub use mirror_ball::{MirrorBall, ProbeMapping};
 pub use probe::{CubeMap, directions, irradiance_sh9, prefilter, sh9_basis, sh9_project};
 pub use projection::{
     Clip, Depth, cube_projection, orthographic, perspective, polygon_offset, shadow_matrix,
@@ -26,4 +29,5 @@ pub use projection::{
 #[doc(hidden)]
 pub use sky::DECODER;
 pub use sky::{Equirect, Sky};
+pub use summed::SummedArea;
 pub use view::{FACES, cube_view, from_angles, look_along, look_at};

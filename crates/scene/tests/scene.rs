@@ -1,6 +1,7 @@
 //! Compares the mathematics for the host with closed forms: matrices, cascades, normals, kernels,
 //! spherical harmonics. Lists of lamps miss none.
 
+mod balls;
 mod clusters;
 mod parts;
 
@@ -18,7 +19,7 @@ const CLIPS: [Clip; 3] = [Clip::Wgpu, Clip::Vulkan, Clip::OpenGl];
 const DEPTHS: [Depth; 2] = [Depth::Normal, Depth::Reversed];
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 16] = [
+    let cases: [Case; 18] = [
         ("views", views),
         ("views_by_angles", angles),
         ("perspective", perspective),
@@ -35,6 +36,8 @@ pub fn tests() -> Vec<Trial> {
         ("harmonics_of_skies", harmonics),
         ("harmonics_of_images", images),
         ("filtered_skies", filtered),
+        ("mirrored_balls", balls::mirror),
+        ("skies_of_balls", balls::round_trip),
     ];
     cases.into_iter().map(|(name, run)| Trial::test(format!("scene::{name}"), run)).collect()
 }

@@ -13,9 +13,9 @@ export interface LinkedProgram {
   topFirst: boolean;
 }
 
-/** A program of two shaders. */
+/** A program of two shaders. Without a fragment shader it writes depths alone. */
 export function linkProgram(
-  gl: WebGL2RenderingContext, vertex: Shader, fragment: Shader,
+  gl: WebGL2RenderingContext, vertex: Shader, fragment?: Shader,
 ): Promise<LinkedProgram>;
 
 /** Binds a buffer to the block that the author calls so; nothing where the shader has none. */

@@ -58,16 +58,29 @@ function numberUnits(gl, program, shader, units) {
   }
 }
 
+/** The fragment shader of a pass that writes depths alone. */
+const NOTHING = "#version 300 es\nvoid main() {}\n";
+
+function compileNothing(gl) {
+  const made = gl.createShader(gl.FRAGMENT_SHADER);
+  gl.shaderSource(made, NOTHING);
+  gl.compileShader(made);
+  return made;
+}
+
 /**
- * A program of two shaders. `blocks` has the binding point of each uniform block by the author's
- * name, and `units` the texture units, each with the names of its texture and its sampler.
+ * A program of two shaders. Without a fragment shader it writes depths alone. `blocks` has the
+ * binding point of each uniform block by the author's name, and `units` the texture units, each with
+ * the names of its texture and its sampler.
  */
 export async function linkProgram(gl, vertex, fragment) {
-  const stages = await Promise.all([vertex, fragment].map((shader) => compile(gl, shader)));
+  const shaders = fragment ? [vertex, fragment] : [vertex];
+  const stages = await Promise.all(shaders.map((shader) => compile(gl, shader)));
+  if (!fragment) stages.push(compileNothing(gl));
   const program = link(gl, stages);
   const blocks = Object.create(null), units = [];
   gl.useProgram(program);
-  for (const shader of [vertex, fragment]) {
+  for (const shader of shaders) {
     numberBlocks(gl, program, shader, blocks);
     numberUnits(gl, program, shader, units);
   }

@@ -449,17 +449,20 @@ pub fn find_surroundings(name: Option<&str>) -> Result<Surroundings, Failure> {
     if let Some(named) = Surroundings::named(name) {
         return Ok(named);
     }
-    let known = ENVIRONMENTS.iter().map(|(name, _, _)| *name);
-    let bytes = match crate::input::read_file(Path::new(name), ENVIRONMENT_BYTES) {
-        Ok(bytes) => bytes,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            return Err(unknown_name("environment or file", name, known));
-        }
-        Err(error) => return Err(Failure::input(format!("cannot read `{name}`: {error}"))),
-    };
-    let image = Equirect::from_radiance(&bytes)
+    let image = Equirect::from_radiance(&read_environment(name)?)
         .map_err(|error| Failure::input(format!("`{name}`: {error}")))?;
     Ok(Surroundings::Image(Arc::new(image)))
+}
+
+/// The bytes of a file with an environment.
+pub fn read_environment(name: &str) -> Result<Vec<u8>, Failure> {
+    crate::input::read_file(Path::new(name), ENVIRONMENT_BYTES).map_err(|error| {
+        if error.kind() == std::io::ErrorKind::NotFound {
+            let known = ENVIRONMENTS.iter().map(|(name, _, _)| *name);
+            return unknown_name("environment or file", name, known);
+        }
+        Failure::input(format!("cannot read `{name}`: {error}"))
+    })
 }
 
 /// Warns of a file name that promises another format. That is not an error.

@@ -6,9 +6,7 @@
 //! still run.
 
 use crate::fixture::{Fixture, FixtureSampler, FixtureTexture};
-use crate::frame::{
-    BindingPlace, Buffers, DrawItem, Drawing, Frame, Mesh, PipelineState, VertexAttribute,
-};
+use crate::frame::{BindingPlace, Buffers, DrawItem, Drawing, Frame, Mesh, VertexAttribute};
 use crate::gpu::run_batches;
 use crate::kernel::{Kernel, kernels_to_compile};
 use crate::shipped::{ColorFormat, Shipped};
@@ -302,8 +300,8 @@ fn frames_question(
     if let Some(reason) = lacks {
         return Err(Diagnostic::error(codes::EXECUTOR_LACKS, reason));
     }
-    if drawing.state != PipelineState::default() || !drawing.levels.is_empty() {
-        let message = "shipped texts are drawn without depth test, culling and smaller levels";
+    if !drawing.state.is_plain() || !drawing.levels.is_empty() {
+        let message = "shipped texts are drawn without culling and smaller levels";
         return Err(executor_failed(message));
     }
     let formats = pair.fragment.targets().map_err(executor_failed)?;
@@ -318,6 +316,7 @@ fn frames_question(
     let reversed = |clip: &ClipSpace| clip.front_face == FrontFace::Reversed;
     Ok(json!({
         "size": drawing.size,
+        "tested": drawing.state.depth_test,
         "formats": formats.iter().map(|one| *one == ColorFormat::Float).collect::<Vec<_>>(),
         "vertex": stage_json(pair.vertex),
         "fragment": stage_json(pair.fragment),

@@ -217,6 +217,17 @@ void main() {
     return textOf(new Uint8Array(pixels.buffer));
   }
 
+  // Depths for the bound framebuffer, all at the far plane.
+  function attachDepths([width, height]) {
+    const made = gl.createRenderbuffer();
+    gl.bindRenderbuffer(gl.RENDERBUFFER, made);
+    gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT32F, width, height);
+    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, made);
+    gl.enable(gl.DEPTH_TEST);
+    gl.clearBufferfv(gl.DEPTH, 0, [1]);
+    return made;
+  }
+
   function deleted({ made, textures }) {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.deleteFramebuffer(made);
@@ -290,7 +301,9 @@ void main() {
     kept.forEach((one) => gl.deleteBuffer(one));
   }
 
-  function frames({ size, formats, vertex, fragment, units, fixtures, blocks, reversed, meshes, views }) {
+  function frames(question) {
+    const { size, tested, formats, vertex, fragment, units, fixtures } = question;
+    const { blocks, reversed, meshes, views } = question;
     const program = linked(begun(vertex.code, fragment.code));
     for (const { name, number } of blocks) {
       const index = gl.getUniformBlockIndex(program, name);
@@ -301,11 +314,14 @@ void main() {
     gl.frontFace(reversed ? gl.CW : gl.CCW);
     const found = views.map((view) => {
       const target = framebuffer(size, formats);
+      const depths = tested ? attachDepths(size) : null;
       gl.useProgram(program);
       bind(ready, null);
       meshes.forEach((mesh, item) => drawItem(mesh, blocks, view[item]));
       const targets = formats.map((isFloat, index) => read(size, isFloat, index));
+      gl.disable(gl.DEPTH_TEST);
       deleted(target);
+      gl.deleteRenderbuffer(depths);
       return targets;
     });
     forgotten(ready);

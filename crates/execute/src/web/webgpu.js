@@ -220,7 +220,7 @@ const lamplight = (() => {
     return { vertices: made(words, VERTEX), indices: made(indices, INDEX), count };
   }
 
-  function pipelineOf({ vertex, fragment, formats, meshes }, groups) {
+  function pipelineOf({ vertex, fragment, formats, meshes, tested }, groups) {
     const [{ stride, attributes }] = meshes;
     const module = ({ code }) => device.createShaderModule({ code });
     const layouts = attributes.map(({ shaderLocation, offset, format }) => (
@@ -238,6 +238,9 @@ const lamplight = (() => {
         entryPoint: fragment.entry,
         targets: formats.map((isFloat) => ({ format: isFloat ? "rgba32float" : "rgba32uint" })),
       },
+      depthStencil: tested
+        ? { format: "depth32float", depthWriteEnabled: true, depthCompare: "less" }
+        : undefined,
     });
   }
 
@@ -255,12 +258,20 @@ const lamplight = (() => {
   }
 
   function drawn(encoder, question, { pipeline, groups, kept, meshes }, view) {
-    const { size: [width, height], formats, layout } = question;
+    const { size: [width, height], formats, layout, tested } = question;
     const targets = formats.map((isFloat) => (
       texture(isFloat ? "rgba32float" : "rgba32uint", width, height, RENDER_ATTACHMENT | COPY_SRC)
     ));
     const colorAttachments = targets.map((target, index) => attachment(target, formats[index]));
-    const pass = encoder.beginRenderPass({ colorAttachments });
+    const depthStencilAttachment = tested
+      ? {
+        view: texture("depth32float", width, height, RENDER_ATTACHMENT).createView(),
+        depthClearValue: 1,
+        depthLoadOp: "clear",
+        depthStoreOp: "discard",
+      }
+      : undefined;
+    const pass = encoder.beginRenderPass({ colorAttachments, depthStencilAttachment });
     pass.setPipeline(pipeline);
     meshes.forEach(({ vertices, indices, count }, item) => {
       bound(layout, groups, kept, view[item]).forEach((one, index) => pass.setBindGroup(index, one));

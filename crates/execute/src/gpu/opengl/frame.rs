@@ -10,7 +10,9 @@ use super::{
 };
 use crate::ShippedPair;
 use crate::fixture::Fixture;
-use crate::frame::{BindingPlace, Buffers, DrawItem, Drawing, Frame, Mesh, PipelineState};
+use crate::frame::{
+    BindingPlace, Buffers, DrawItem, Drawing, Frame, Mesh, PipelineState, VertexFormat,
+};
 use crate::gpu::opengl::context::OpenGlApi;
 use crate::kernel::SENTINEL;
 use crate::shipped::{ColorFormat, Shipped};
@@ -31,8 +33,8 @@ pub fn draw_frames(
     pair: ShippedPair<'_>,
     drawing: &Drawing<'_>,
 ) -> Result<Vec<Frame>, String> {
-    if drawing.state != PipelineState::default() || !drawing.levels.is_empty() {
-        return Err("shipped texts are drawn without depth test, culling and smaller levels".into());
+    if !drawing.state.is_plain() || !drawing.levels.is_empty() {
+        return Err("shipped texts are drawn without culling and smaller levels".into());
     }
     let formats = pair.fragment.targets()?;
     let ready = prepare_frame(gl, pair, drawing)?;
@@ -130,12 +132,9 @@ fn draw_frame(
     unsafe {
         let framebuffer = gl.create_framebuffer()?;
         gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
-        let points: Vec<u32> =
-            (0..targets.len() as u32).map(|index| glow::COLOR_ATTACHMENT0 + index).collect();
-        for (point, target) in points.iter().zip(&targets) {
-            let of = glow::TEXTURE_2D;
-            gl.framebuffer_texture_2d(glow::FRAMEBUFFER, *point, of, Some(*target), 0);
-        }
+        let points = attach_targets(gl, &targets);
+        let depths =
+            drawing.state.depth_test.then(|| attach_depths(gl, [width, height])).transpose()?;
         gl.draw_buffers(&points);
         if gl.check_framebuffer_status(glow::FRAMEBUFFER) != glow::FRAMEBUFFER_COMPLETE {
             return Err("the driver draws into no such targets".to_owned());
@@ -156,11 +155,52 @@ fn draw_frame(
             read_target(gl, [width, height], *format)
         });
         let words = read.collect();
+        gl.disable(glow::DEPTH_TEST);
         gl.bind_framebuffer(glow::FRAMEBUFFER, None);
         gl.delete_framebuffer(framebuffer);
+        depths.into_iter().for_each(|depths| gl.delete_renderbuffer(depths));
         targets.into_iter().for_each(|target| gl.delete_texture(target));
         check_error(gl)?;
         Ok(Frame { targets: words, depth: Vec::new(), detour: None })
+    }
+}
+
+/// Gives the bound framebuffer its targets; returns their attachment points.
+///
+/// # Safety
+///
+/// The context is current, and a framebuffer is bound.
+unsafe fn attach_targets(gl: &glow::Context, targets: &[glow::Texture]) -> Vec<u32> {
+    let attach = |(target, point): (&glow::Texture, u32)| {
+        let (of, kind) = (glow::FRAMEBUFFER, glow::TEXTURE_2D);
+        // SAFETY: the context is current and a framebuffer is bound.
+        unsafe { gl.framebuffer_texture_2d(of, point, kind, Some(*target), 0) };
+        point
+    };
+    targets.iter().zip(glow::COLOR_ATTACHMENT0..).map(attach).collect()
+}
+
+/// Gives the bound framebuffer depths, all at the far plane, and turns the test on.
+///
+/// # Safety
+///
+/// The context is current, and a framebuffer is bound.
+unsafe fn attach_depths(
+    gl: &glow::Context,
+    [width, height]: [i32; 2],
+) -> Result<glow::Renderbuffer, String> {
+    // SAFETY: the context is current and a framebuffer is bound.
+    unsafe {
+        let made = gl.create_renderbuffer()?;
+        gl.bind_renderbuffer(glow::RENDERBUFFER, Some(made));
+        gl.renderbuffer_storage(glow::RENDERBUFFER, glow::DEPTH_COMPONENT32F, width, height);
+        let (of, point) = (glow::FRAMEBUFFER, glow::DEPTH_ATTACHMENT);
+        gl.framebuffer_renderbuffer(of, point, glow::RENDERBUFFER, Some(made));
+        gl.enable(glow::DEPTH_TEST);
+        gl.depth_func(glow::LESS);
+        gl.depth_mask(true);
+        gl.clear_buffer_f32_slice(glow::DEPTH, 0, &[1.0]);
+        Ok(made)
     }
 }
 
