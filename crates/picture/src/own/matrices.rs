@@ -143,7 +143,7 @@ fn space_of(word: &str) -> Option<Space> {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DMat3, DMat4, DVec3};
+    use glam::{DMat3, DMat4};
 
     use super::{is_model_view, lacks_view, matrix_numbers};
     use crate::own::around::Around;
@@ -180,28 +180,35 @@ mod tests {
             let off = found.iter().zip(expected.to_cols_array());
             assert!(off.clone().all(|(a, b)| (a - b).abs() < 1e-9), "{name}: {found:?}");
         }
-        let three =
-            matrix_numbers("", "normal_from_object", NumberType::of("mat3x3<f32>"), &around);
-        let turned = three.map(|(n, _)| DVec3::new(n[0], n[1], n[2]));
-        let expected = DMat3::from_mat4(normal).x_axis;
-        let turned = turned.ok_or("no matrix")?;
-        assert!((turned.normalize() - expected.normalize()).length() < 1e-9, "{turned}");
+        assert_eq!(matrix_numbers("", "wobble", NumberType::of("mat4x4<f32>"), &around), None);
+        Ok(())
+    }
+
+    /// Matrices of three columns, and what a name means beside others.
+    #[test]
+    fn products_beside_others() {
+        let around = sample();
+        let (model, view) = (around.step(0), around.step(1));
+        let numbers = |name: &str, ty: &str, around: &Around<'_>| {
+            let found = matrix_numbers("", name, NumberType::of(ty), around);
+            found.map(|(numbers, _)| numbers).unwrap_or_default()
+        };
+        let close = |found: &[f64], expected: &[f64]| {
+            found.len() == expected.len()
+                && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9)
+        };
+        let normal = |matrix: DMat4| DMat3::from_mat4(matrix).inverse().transpose().to_cols_array();
+        let found = numbers("normalMatrix", "mat3x3<f32>", &around);
+        assert!(close(&found, &normal(model)), "{found:?}");
         let seen = Around { seen_normals: true, ..around.clone() };
-        let found = matrix_numbers("", "normalMatrix", NumberType::of("mat3x3<f32>"), &seen);
-        let expected = DMat3::from_mat4(view * model).inverse().transpose().to_cols_array();
-        let found = found.map(|(numbers, _)| numbers).unwrap_or_default();
-        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9) && found.len() == 9);
+        let found = numbers("normalMatrix", "mat3x3<f32>", &seen);
+        assert!(close(&found, &normal(view * model)), "{found:?}");
         let seen = Around { seen_model: true, ..around.clone() };
-        let found = matrix_numbers("ubo", "model", NumberType::of("mat4x4<f32>"), &seen);
-        assert_eq!(
-            found.map(|(numbers, _)| numbers),
-            Some((view * model).to_cols_array().to_vec())
-        );
+        let found = numbers("model", "mat4x4<f32>", &seen);
+        assert!(close(&found, &(view * model).to_cols_array()), "{found:?}");
         assert!(lacks_view(["projection", "model"].into_iter()));
         assert!(!lacks_view(["projection", "view", "model"].into_iter()));
         assert!(!lacks_view(["uMVP", "model"].into_iter()));
         assert!(is_model_view("modelViewMatrix") && !is_model_view("uMVP"));
-        assert_eq!(matrix_numbers("", "wobble", NumberType::of("mat4x4<f32>"), &around), None);
-        Ok(())
     }
 }
