@@ -10,9 +10,7 @@ use super::{
 };
 use crate::ShippedPair;
 use crate::fixture::Fixture;
-use crate::frame::{
-    BindingPlace, Buffers, DrawItem, Drawing, Frame, Mesh, PipelineState, VertexFormat,
-};
+use crate::frame::{BindingPlace, Buffers, DrawItem, Drawing, Frame, Mesh};
 use crate::gpu::opengl::context::OpenGlApi;
 use crate::kernel::SENTINEL;
 use crate::shipped::{ColorFormat, Shipped};
