@@ -28,15 +28,17 @@ use crate::guide;
 use crate::snapshot::root;
 
 pub fn tests() -> Vec<Trial> {
-    vec![
+    let tests = [
         Trial::test("examples::load_bundle", loads_a_bundle),
         Trial::test("examples::hot_reload", swaps_while_it_draws),
         Trial::test("examples::shadow_pass", shadow_falls_where_rays_say),
         Trial::test("examples::plain_glsl", plain_glsl_compiles),
         Trial::test("examples::readme_glsl", readme_glsl_compiles),
         Trial::test("examples::wesl_crate", wesl_crate_links),
-        Trial::test("examples::build_script", build_script_compiles),
-    ]
+    ];
+    // It compiles the library once more, with other features, which takes minutes.
+    let at_night = [Trial::test("examples::build_script", build_script_compiles)];
+    tests.into_iter().chain(at_night.into_iter().filter(|_| crate::is_whole())).collect()
 }
 
 /// The example that loads a bundle draws an orange pixel.

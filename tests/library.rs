@@ -254,9 +254,9 @@ fn difference_is_shown() -> Result<(), Failed> {
     }
 }
 
-/// Every fortieth output of each target is validated here, and each one with a new line. The
+/// Every eightieth output of each target is validated here, and each one with a new line. The
 /// nightly tests take every seventh, and `cargo xtask gen --validate all` takes all.
-const VALIDATED: usize = 40;
+const VALIDATED: usize = 80;
 const VALIDATED_AT_NIGHT: usize = 7;
 /// The fewest outputs of a target that must be validated.
 const LEAST_VALIDATED: usize = 100;

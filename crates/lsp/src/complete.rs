@@ -11,7 +11,7 @@ use super::{LanguageServer, actions, glsl};
 use lamplight_catalogue::CatalogueItemKind;
 use lamplight_diagnostic::source::Files;
 use lamplight_permute::Setting;
-use lamplight_syntax::wesl::{ItemKind, Name, keywords};
+use lamplight_syntax::wesl::{Item, ItemKind, Name, keywords};
 
 /// The protocol's `CompletionItemKind`.
 pub const FUNCTION: u32 = 3;
@@ -299,7 +299,11 @@ pub fn importable_items(
         if Some(index as u32) == own || node.label.starts_with("lamplight::") {
             continue;
         }
-        for item in node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE) {
+        let here = own.map(|own| &modules.graph.nodes[own as usize]);
+        let is_shown = |item: &&Item| {
+            item.name != Name::UNDERSCORE && here.is_none_or(|here| node.shows(item, here))
+        };
+        for item in node.module.items.iter().filter(is_shown) {
             let name = modules.graph.names.text(item.name).to_owned();
             found.push((format!("{}::{name}", node.label), name, completion_kind(item.kind)));
         }
