@@ -50,6 +50,7 @@ const TESTS: &[(&str, Run)] = &[
     ("cost_written", cost::written),
     ("incremental", incremental::as_fresh),
     ("module_becomes_item", incremental::module_becomes_item),
+    ("item_is_passed_on_too", incremental::item_is_passed_on_too),
     ("long_lines", lines::long_lines),
     ("glsl::hover", glsl::hover),
     ("glsl::definition", glsl::definition),

@@ -120,7 +120,25 @@ fn print_value(
 
 #[cfg(test)]
 mod tests {
-    use super::options_first;
+    use std::collections::BTreeSet;
+
+    use clap::CommandFactory;
+
+    use super::{VALUED, options_first};
+    use crate::cli::Cli;
+
+    /// The value of an option that is missing in the list would be read as an expression.
+    #[test]
+    fn options_with_values() {
+        let mut command = Cli::command();
+        command.build();
+        let eval = command.find_subcommand("eval").into_iter();
+        let valued = eval
+            .flat_map(|eval| eval.get_arguments())
+            .filter(|argument| argument.get_action().takes_values())
+            .filter_map(|argument| argument.get_long().map(|name| format!("--{name}")));
+        assert_eq!(valued.collect::<BTreeSet<_>>(), VALUED.map(str::to_owned).into());
+    }
 
     #[test]
     fn options_after_expressions() {

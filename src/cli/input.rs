@@ -374,7 +374,7 @@ impl InputArguments {
         self.stage.map(Stage::from).or(wrapped)
     }
 
-    /// Whether the language of a text is told.
+    /// Whether the language of a text is chosen.
     pub fn names_language(&self) -> bool {
         self.lang.is_some() || self.stage().is_some()
     }

@@ -56,8 +56,8 @@ pub fn write_picture(text: &str) -> io::Result<()> {
 /// How many columns the terminal has; 80 if nothing says so.
 pub fn columns() -> u32 {
     const USUAL: u32 = 80;
-    let told = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
-    told.filter(|columns| *columns > 0).or_else(terminal_columns).unwrap_or(USUAL)
+    let given = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    given.filter(|columns| *columns > 0).or_else(terminal_columns).unwrap_or(USUAL)
 }
 
 #[cfg(target_os = "linux")]

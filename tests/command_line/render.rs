@@ -14,6 +14,7 @@ pub const CASES: &[Case] = &[
     ("picture_of_a_file", picture),
     ("picture_in_a_terminal", in_terminal),
     ("picture_that_follows_its_files", watched),
+    ("picture_of_endless_loops", endless),
     ("picture_with_wrong_options", wrong_options),
 ];
 
@@ -49,9 +50,9 @@ fn picture() -> Outcome {
     let run = package.run(DRAW)?.ends(0)?;
     run.says(&["0, 1, 1  file", "note: every pixel is black"])?;
     let run = package.run(&format!("{DRAW} --uniform tint=#ff0000 --json"))?.ends(0)?;
-    let told: serde_json::Value = serde_json::from_str(&run.out)?;
-    equal(told["inputs"][0]["from"].as_str(), Some("option"))?;
-    equal(told["picture"].as_str(), Some("own.png"))?;
+    let answer: serde_json::Value = serde_json::from_str(&run.out)?;
+    equal(answer["inputs"][0]["from"].as_str(), Some("option"))?;
+    equal(answer["picture"].as_str(), Some("own.png"))?;
     package.write("own.uniforms.toml", "[uniforms]\ntimt = 1\n")?;
     let run = package.run(DRAW)?.ends(1)?;
     run.says(&[
@@ -60,6 +61,24 @@ fn picture() -> Outcome {
         "did you mean `tint`?",
     ])?;
     Ok(())
+}
+
+/// Loops without an end are ended in both stages.
+fn endless() -> Outcome {
+    const TEXT: &str = "@group(0) @binding(0) var<uniform> most: u32;
+@vertex fn vs_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    var corners = array<vec2f, 3>(vec2f(-1.0, -1.0), vec2f(3.0, -1.0), vec2f(-1.0, 3.0));
+    loop { if most > 0u { break; } }
+    return vec4f(corners[index], 0.5, 1.0);
+}
+@fragment fn fs_main() -> @location(0) vec4f {
+    loop { if most > 0u { break; } }
+    return vec4f(0.0, 1.0, 0.0, 1.0);
+}
+";
+    let package = Package::new(&[("own.wesl", TEXT)])?;
+    package.run("render own.wesl --executor eval --size 1x1")?.ends(0)?;
+    equal(corner(&package.path("own.png"))?, [0, 255, 0])
 }
 
 /// Nothing is written where the terminal shows the picture, unless a file is named.

@@ -193,7 +193,7 @@ impl Editing {
     }
 
     /// Changes a file on the disk, often to one that is as long, and tells the server nothing of it.
-    /// The next keystroke in another file notices it.
+    /// The next keystroke in a document that reads the file notices it, so one is made in each.
     fn change_silently(&mut self, index: usize) -> Outcome {
         let text = fs::read_to_string(self.path(index)?)?;
         let text = match self.random.below(4) {
@@ -203,14 +203,15 @@ impl Editing {
             _ => text.replace("term", "turn"),
         };
         fs::write(self.path(index)?, &text)?;
-        let (other, text) = self.open.iter().next().ok_or("nothing is open")?;
-        let (other, text) = (*other, format!("{text}\n"));
-        let change = json!({
-            "textDocument": { "uri": self.uri(other)?, "version": 3 },
-            "contentChanges": [{ "text": text }],
-        });
-        self.editor.notify("textDocument/didChange", change);
-        self.open.insert(other, text);
+        for (other, text) in self.open.clone() {
+            let text = format!("{text}\n");
+            let change = json!({
+                "textDocument": { "uri": self.uri(other)?, "version": 3 },
+                "contentChanges": [{ "text": text }],
+            });
+            self.editor.notify("textDocument/didChange", change);
+            self.open.insert(other, text);
+        }
         Ok(())
     }
 
@@ -305,28 +306,43 @@ pub fn as_fresh() -> Outcome {
 /// `import package::a::b` means the module `a/b.wesl` until the module `a` declares an item `b`.
 /// Then it means this item, and the server notices.
 pub fn module_becomes_item() -> Outcome {
+    let user = "import package::a::b;\nfn g() -> f32 { return b(); }\n";
+    let files = [("a.wesl", ""), ("a/b.wesl", "fn c() {}\n"), ("x.wesl", user)];
+    noticed(&files, "fn b() -> f32 { return 1.0; }\n")
+}
+
+/// A module declares an item, and from then on passes on another one of the name where it does not.
+pub fn item_is_passed_on_too() -> Outcome {
+    let user = "import package::a::b;\nfn g() -> f32 { return b(); }\n";
+    let declared = "@if(N) public fn b() -> f32 { return 1.0; }\n";
+    let other = "public fn b() -> f32 { return 2.0; }\n";
+    let files = [("a.wesl", declared), ("c.wesl", other), ("x.wesl", user)];
+    noticed(&files, &format!("@if(!N) public import package::c::b;\n{declared}"))
+}
+
+/// The server answers as a new one about the use of `b` in the last file, after `a.wesl` has changed.
+fn noticed(files: &[(&str, &str)], changed: &str) -> Outcome {
     let folder = tempfile::tempdir()?;
     let root = folder.path().canonicalize()?;
     fs::create_dir(root.join("a"))?;
-    let user = "import package::a::b;\nfn g() -> f32 { return b(); }\n";
-    for (file, text) in [("a.wesl", ""), ("a/b.wesl", "fn c() {}\n"), ("x.wesl", user)] {
+    for (file, text) in files {
         fs::write(root.join(file), text)?;
     }
+    let (first, last) = (files[0].1, files[files.len() - 1].1);
     let uri = |file: &str| format!("file://{}", root.join(file).display());
     let mut kept = Editor::new();
-    kept.open(&uri("x.wesl"), user);
-    kept.open(&uri("a.wesl"), "");
+    kept.open(&uri("x.wesl"), last);
+    kept.open(&uri("a.wesl"), first);
     kept.look();
-    let item = "fn b() -> f32 { return 1.0; }\n";
     let change = json!({
         "textDocument": { "uri": uri("a.wesl"), "version": 2 },
-        "contentChanges": [{ "text": item }],
+        "contentChanges": [{ "text": changed }],
     });
     kept.notify("textDocument/didChange", change);
     kept.look();
     let mut new = Editor::new();
-    new.open(&uri("x.wesl"), user);
-    new.open(&uri("a.wesl"), item);
+    new.open(&uri("x.wesl"), last);
+    new.open(&uri("a.wesl"), changed);
     new.look();
     let call = json!({
         "textDocument": { "uri": uri("x.wesl") },
@@ -336,13 +352,8 @@ pub fn module_becomes_item() -> Outcome {
     if answers[1]["result"].is_null() {
         return Err(format!("a new server finds nothing: {}", answers[1]).into());
     }
-    differs(1, "definition", user, Some(&answers[0]), &answers[1])?;
+    differs(1, "definition", last, Some(&answers[0]), &answers[1])?;
     let published = [&kept, &new].map(|one| one.published.get(&uri("x.wesl")));
-    differs(
-        1,
-        "diagnostics",
-        user,
-        published[0],
-        published[1].ok_or("nothing was published for x.wesl")?,
-    )
+    let fresh = published[1].ok_or("nothing was published for x.wesl")?;
+    differs(1, "diagnostics", last, published[0], fresh)
 }

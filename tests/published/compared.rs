@@ -98,9 +98,11 @@ fn compared(maker: &dyn Session, index: usize, column: &Column) -> Result<(), St
         true => all,
         false => vec![all[7 * index % all.len()]],
     };
-    let session = (column.open)().map_err(|missing| missing.reason)?;
     let painter: Box<dyn Session> = match column.target {
-        Some(target) => Box::new(Outputs { session, target }),
+        Some(target) => {
+            let session = (column.open)().map_err(|missing| missing.reason)?;
+            Box::new(Outputs { session, target })
+        }
         None => start(column.executor)?,
     };
     let (recorded, mut failures) = (column.recorded(), Vec::new());

@@ -3,28 +3,11 @@
 use super::condition::ShaderDefTest;
 use super::names::{FolderModules, PathDestination};
 use super::tree::{ByteRange, Conditional, ImportDirective, ImportLeaf, ImportedPath, Node};
-use lamplight_syntax::wesl::blank::comment_length;
+use lamplight_syntax::wesl::blank::without_comments;
 use lamplight_syntax::words::leading_word;
 
 /// Why an import cannot be read, and where.
 type ImportError = (&'static str, ByteRange);
-
-/// The text with each byte of its comments replaced by a space. What is in quotes is no comment: the
-/// path of a file may have slashes.
-pub fn without_comments(text: &str) -> String {
-    let mut bare = String::with_capacity(text.len());
-    let mut is_quoted = false;
-    while let Some(next) = text[bare.len()..].chars().next() {
-        match comment_length(&text[bare.len()..]) {
-            length if length > 0 && !is_quoted => bare.extend(std::iter::repeat_n(' ', length)),
-            _ => {
-                is_quoted = next == '"' && !is_quoted || is_quoted && !matches!(next, '"' | '\n');
-                bare.push(next);
-            }
-        }
-    }
-    bare
-}
 
 /// Reads the directive in `place`.
 pub fn parse_import(text: &str, place: ByteRange) -> Result<ImportLeaf, ImportError> {

@@ -10,7 +10,7 @@ use super::tree::{
 use lamplight_diagnostic::source::{LIMITS, SourceId, Span};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_files::limits::count_steps;
-use lamplight_syntax::wesl::blank::{block_comment, comment_length};
+use lamplight_syntax::wesl::blank::{block_comment, comment_length, without_comments};
 use lamplight_syntax::words::{begins_word, continues_word, leading_word, number_end};
 
 /// Cuts up a file. The error is the first thing that cannot be understood.
@@ -131,7 +131,7 @@ impl MigrateScanner<'_> {
         let start = self.line_start();
         let end = self.at + self.rest().find('\n').unwrap_or(self.rest().len());
         let whole = &self.text[self.at..end];
-        let bare = import::without_comments(whole);
+        let bare = without_comments(whole);
         let words = self.at..self.at + bare.trim_end().len();
         let end = (end + 1).min(self.text.len());
         let line = DirectiveLine { lead: self.lead.min(start)..start, range: start..end, words };
@@ -254,7 +254,7 @@ impl MigrateScanner<'_> {
         let start = self.at;
         let mut line = self.line();
         let is_open = |text: &str| {
-            let bare = import::without_comments(text);
+            let bare = without_comments(text);
             bare.matches('{').count() > bare.matches('}').count()
         };
         while is_open(&self.text[start..self.at]) && self.at < self.text.len() {

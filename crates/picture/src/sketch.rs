@@ -91,7 +91,7 @@ pub struct SketchOptions {
 const TRIPS: u32 = 4096;
 
 /// Bytes of a uniform buffer that every device takes.
-const UNIFORM_BYTES: u32 = 64 << 10;
+pub(crate) const UNIFORM_BYTES: u32 = 64 << 10;
 
 /// How many uniforms get controls.
 const LISTED: usize = 256;
@@ -169,7 +169,7 @@ impl Sketch {
         setting: &SketchOptions,
         shot: &Shot,
     ) -> Result<PreparedPass, Diagnostics> {
-        let vertex = vertex_stage(&self.stage.reflection, setting)?;
+        let vertex = vertex_stage(vertex_text(&self.stage.reflection, setting))?;
         let eye = PassCamera::of_viewer(&turned_eye(setting.turn), shot);
         let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
         for binding in &self.stage.reflection.bindings {
@@ -214,16 +214,23 @@ fn sketch_refused(message: &str) -> Diagnostic {
 
 fn model(name: &str) -> Object {
     let (_, shape) = MODELS.iter().find(|(known, _)| *known == name).unwrap_or(&MODELS[0]);
-    Object::made(shape(), DMat4::IDENTITY, DVec3::ONE, Material::default())
+    white_object(shape())
 }
 
-fn turned_eye([around, up]: [f64; 2]) -> Eye {
+/// A shape of the colour white at the origin.
+pub(crate) fn white_object(shape: Shape) -> Object {
+    Object::made(shape, DMat4::IDENTITY, DVec3::ONE, Material::default())
+}
+
+/// The viewer, who has walked around the model and up, by angles in radians.
+pub(crate) fn turned_eye([around, up]: [f64; 2]) -> Eye {
     let up = up.clamp(0.05 - FRAC_PI_2, FRAC_PI_2 - 0.05);
     let turned = DQuat::from_rotation_y(around) * DQuat::from_rotation_x(-up);
     Eye { position: turned * DVec3::Z * 4.0, target: DVec3::ZERO, fov_y: 0.6, near: 0.5, far: 10.0 }
 }
 
-fn input_label(input: &Varying) -> String {
+/// The name of an input, or its place.
+pub(crate) fn input_label(input: &Varying) -> String {
     let place = || format!("location({})", input.location.unwrap_or_default());
     input.name.clone().unwrap_or_else(place)
 }
@@ -301,10 +308,12 @@ fn unbound(binding: &Binding) -> Diagnostic {
     ))
 }
 
-/// The vertex stage that gives a fragment stage what it asks for.
-fn vertex_stage(fragment: &Reflection, setting: &SketchOptions) -> Result<ReadyStage, Diagnostics> {
-    const PATH: &str = "sketch.wesl";
-    let text = vertex_text(fragment, setting);
+/// The vertex stage `vs_main` of a text in WESL.
+///
+/// # Errors
+/// Those of naga, for an input whose type no vertex stage can give.
+pub(crate) fn vertex_stage(text: String) -> Result<ReadyStage, Diagnostics> {
+    const PATH: &str = "vertex.wesl";
     let packages = Packages::of_text(PATH, text);
     let graph = resolve::load(&mut SourceSet::default(), &packages, PATH, Language::Wesl)?;
     let composed = compose::compose(&graph, &Settings::default(), &Options::default())?;
@@ -320,12 +329,13 @@ fn vertex_stage(fragment: &Reflection, setting: &SketchOptions) -> Result<ReadyS
     })
 }
 
+/// The vertex stage that gives a fragment stage what it asks for.
 fn vertex_text(fragment: &Reflection, setting: &SketchOptions) -> String {
     let is_taken =
         |place: &u32| fragment.bindings.iter().any(|one| one.group == 0 && one.binding == *place);
     let mut free = (0..).filter(|place| !is_taken(place));
     let [camera, around] = [(); 2].map(|()| free.next().unwrap_or_default());
-    let (outputs, lines) = given_inputs(fragment, setting);
+    let (outputs, lines) = given_inputs(fragment, &|input| given_value(input, setting));
     format!(
         "struct Camera {{
     clip_from_world: mat4x4f,
@@ -362,28 +372,38 @@ fn vs_main(
     )
 }
 
-/// The outputs of the vertex stage, and the statements that write them.
-fn given_inputs(fragment: &Reflection, setting: &SketchOptions) -> (String, String) {
+/// The outputs of a vertex stage that gives a fragment stage its inputs, and the statements that
+/// write them. `value` is the expression for an input.
+pub(crate) fn given_inputs(
+    fragment: &Reflection,
+    value: &dyn Fn(&Varying) -> String,
+) -> (String, String) {
     let (mut outputs, mut lines) = (String::new(), String::new());
     for input in &fragment.inputs {
         let Some(location) = input.location else { continue };
-        let ty = &input.ty;
-        let interpolation = match (input.interpolation.as_deref(), input.sampling.as_deref()) {
-            (Some(kind), Some(sampling)) => format!("@interpolate({kind}, {sampling}) "),
-            (Some(kind), None) => format!("@interpolate({kind}) "),
-            (None, _) if is_integer(ty) => "@interpolate(flat) ".to_owned(),
-            (None, _) => String::new(),
-        };
+        let (ty, interpolation) = (&input.ty, interpolation_text(input));
         let _ =
             writeln!(outputs, "    @location({location}) {interpolation}given_{location}: {ty},");
-        let source = source_of(input, setting);
-        let part = match ty.as_bytes().get(3) {
-            Some(b'2') if ty.starts_with("vec") => format!("{ty}({source}.xy)"),
-            Some(b'3') if ty.starts_with("vec") => format!("{ty}({source})"),
-            Some(b'4') if ty.starts_with("vec") => format!("{ty}(vec4f({source}, 1.0))"),
-            _ => format!("{ty}({source}.x)"),
-        };
-        let _ = writeln!(lines, "    given.given_{location} = {part};");
+        let _ = writeln!(lines, "    given.given_{location} = {};", value(input));
     }
     (outputs, lines)
+}
+
+fn interpolation_text(input: &Varying) -> String {
+    match (input.interpolation.as_deref(), input.sampling.as_deref()) {
+        (Some(kind), Some(sampling)) => format!("@interpolate({kind}, {sampling}) "),
+        (Some(kind), None) => format!("@interpolate({kind}) "),
+        (None, _) if is_integer(&input.ty) => "@interpolate(flat) ".to_owned(),
+        (None, _) => String::new(),
+    }
+}
+
+fn given_value(input: &Varying, setting: &SketchOptions) -> String {
+    let (ty, source) = (&input.ty, source_of(input, setting));
+    match ty.as_bytes().get(3) {
+        Some(b'2') if ty.starts_with("vec") => format!("{ty}({source}.xy)"),
+        Some(b'3') if ty.starts_with("vec") => format!("{ty}({source})"),
+        Some(b'4') if ty.starts_with("vec") => format!("{ty}(vec4f({source}, 1.0))"),
+        _ => format!("{ty}({source}.x)"),
+    }
 }

@@ -1,7 +1,7 @@
 //! Pictures as a terminal shows them.
 //!
-//! Terminals do not say in a common way what they can. Their names are in the environment, and those
-//! that are known for a protocol get it. All others get half blocks in 24-bit colour.
+//! Terminals do not say in a common way what they can show. Their names are in the environment, and
+//! those that are known for a protocol get it. All others get half blocks in 24-bit colour.
 
 use std::fmt::Write as _;
 
@@ -32,12 +32,12 @@ impl TerminalForm {
         ("blocks", Self::Blocks),
     ];
 
-    /// What the terminal can, by the variables of its environment.
+    /// What the terminal can show, by the variables of its environment.
     pub fn of_environment(variable: &dyn Fn(&str) -> Option<String>) -> Self {
         let is = |name: &str, values: &[&str]| {
             variable(name).is_some_and(|value| values.iter().any(|known| value.starts_with(known)))
         };
-        // A multiplexer shows its own cells, whatever the terminal around it can.
+        // A multiplexer shows its own cells, whatever the terminal around it can show.
         if is("TERM", &["screen", "tmux"]) {
             return Self::Blocks;
         }
@@ -94,7 +94,8 @@ fn kitty_text(encoded: &str) -> String {
     text
 }
 
-/// Upper half blocks: the character has the colour of the upper pixel, and its ground that of the lower.
+/// Upper half blocks: the character has the colour of the upper pixel, and its background that of the
+/// lower.
 fn blocks_text(picture: &Picture) -> String {
     let mut text = String::new();
     for row in (0..picture.height).step_by(2) {
@@ -164,13 +165,13 @@ fn write_band(text: &mut String, rows: &[Vec<u32>], color: u32) {
                 let _ = write!(text, "!{length}{letter}");
             }
         }
-        from += length.max(1);
+        from += length;
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{TerminalForm, terminal_text};
+    use super::{PART, TerminalForm, kitty_text, terminal_text};
     use crate::Picture;
 
     fn two_rows() -> Picture {
@@ -205,6 +206,9 @@ mod tests {
     fn files_in_parts() -> Result<(), String> {
         let text = terminal_text(&two_rows(), TerminalForm::Kitty, 80)?;
         assert!(text.starts_with("\x1b_Ga=T,f=100,m=0;iVBORw0KGgo"), "{text}");
+        let whole = "A".repeat(PART);
+        let expected = format!("\x1b_Ga=T,f=100,m=1;{whole}\x1b\\\x1b_Gm=0;B\x1b\\\n");
+        assert_eq!(kitty_text(&format!("{whole}B")), expected);
         let text = terminal_text(&two_rows(), TerminalForm::Iterm, 80)?;
         assert!(text.starts_with("\x1b]1337;File=inline=1;size="), "{text}");
         Ok(())
@@ -222,5 +226,8 @@ mod tests {
             let variable = |asked: &str| (asked == name).then(|| value.to_owned());
             assert_eq!(TerminalForm::of_environment(&variable), expected, "{name}={value}");
         }
+        let in_multiplexer =
+            |asked: &str| Some(if asked == "TERM" { "tmux-256color" } else { "1" }.to_owned());
+        assert_eq!(TerminalForm::of_environment(&in_multiplexer), TerminalForm::Blocks);
     }
 }

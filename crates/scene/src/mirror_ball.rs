@@ -80,8 +80,8 @@ impl MirrorBall {
         DVec2::new(at(column), -at(row))
     }
 
-    /// The radiance from a direction: linear between the pixels that show the ball. Near -z, all
-    /// directions are at the rim, and are told apart badly.
+    /// The radiance from a direction: linear between the pixels that show the ball. Directions near -z
+    /// are all at the rim, where few pixels show them.
     pub fn radiance(&self, direction: DVec3) -> DVec3 {
         let d = direction.normalize_or(DVec3::Z);
         let angle = d.z.clamp(-1.0, 1.0).acos();
@@ -97,7 +97,7 @@ impl MirrorBall {
             .unwrap_or_else(|| self.pixels[self.pixels.len() / 2])
     }
 
-    /// The mean of the four pixels around a place, without those beside the ball.
+    /// The weighted mean of the four pixels around a place, without those beside the ball.
     fn linear(&self, place: DVec2) -> Option<DVec3> {
         let side = self.side as f64;
         let at = (DVec2::new(place.x, -place.y) * 0.5 + 0.5) * side - 0.5;

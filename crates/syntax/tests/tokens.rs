@@ -63,7 +63,9 @@ fn comments_nest() -> Outcome {
     let bare = blank::without_comments(text);
     same("the length", bare.len(), text.len())?;
     same("the words", bare.split_whitespace().collect::<Vec<_>>(), vec!["a", "e", "g"])?;
-    same("the place of a word", bare.find('g'), text.find('g'))
+    same("the place of a word", bare.find('g'), text.find('g'))?;
+    let quoted = blank::without_comments("import \"a//b\" // c \"\n\"d // e\nf // g");
+    same("quotes", quoted.as_str(), "import \"a//b\"       \n\"d // e\nf     ")
 }
 
 fn parse_wesl(text: &str) -> (wesl::Module, Names) {

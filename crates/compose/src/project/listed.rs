@@ -22,8 +22,8 @@ impl ListedFiles {
     /// The files of the package whose root is a folder.
     pub fn new(root: &Path, below: Box<dyn Files>) -> Self {
         let FilePatterns { include, exclude, root } = wesl_toml::patterns(root);
-        let all = |patterns: Vec<String>| {
-            patterns.iter().flat_map(|pattern| file_patterns(pattern)).collect::<Vec<_>>()
+        let all = |patterns: Vec<String>| -> Vec<Pattern> {
+            patterns.iter().filter_map(|pattern| file_pattern(pattern)).collect()
         };
         Self { below, include: include.map(all), exclude: all(exclude), root }
     }
@@ -38,9 +38,10 @@ impl ListedFiles {
     }
 }
 
-/// The patterns that a line of `include` or `exclude` means: a last part with neither a wildcard nor
-/// an ending is a folder with all that is in it.
-fn file_patterns(pattern: &str) -> Vec<Pattern> {
+/// The pattern that a line of `include` or `exclude` means: a last part with neither a wildcard nor
+/// an ending is a folder with all that is in it. `None` where it is no pattern, which the manifest's
+/// reader reports.
+fn file_pattern(pattern: &str) -> Option<Pattern> {
     let pattern = pattern.trim_start_matches("./").trim_end_matches('/');
     let last = pattern.rsplit('/').next().unwrap_or(pattern);
     let whole = match last.contains(['*', '?', '.']) && !matches!(last, "." | "..") {
@@ -48,7 +49,7 @@ fn file_patterns(pattern: &str) -> Vec<Pattern> {
         false if matches!(pattern, "" | ".") => "**/*".to_owned(),
         false => format!("{pattern}/**/*"),
     };
-    Pattern::new(&whole).into_iter().collect()
+    Pattern::new(&whole).ok()
 }
 
 impl Files for ListedFiles {
@@ -110,8 +111,8 @@ mod tests {
             "deep/d.wesl",
         ];
         let files = files.map(|file| (file.to_owned(), String::new()));
-        let all = |patterns: &[&str]| {
-            patterns.iter().flat_map(|pattern| file_patterns(pattern)).collect::<Vec<_>>()
+        let all = |patterns: &[&str]| -> Vec<Pattern> {
+            patterns.iter().filter_map(|pattern| file_pattern(pattern)).collect()
         };
         let listed = ListedFiles {
             below: Box::new(Memory(files.into())),

@@ -70,7 +70,6 @@ fn packages_with(
     sources: &mut SourceSet,
     library: Embedded,
 ) -> Result<Packages, Diagnostics> {
-    let folder = root;
     if root.is_file() {
         return Err(vec![Diagnostic::error(
             codes::UNREADABLE,
@@ -79,8 +78,8 @@ fn packages_with(
     }
     let disk = Disk::new(root).map_err(|error| vec![unreadable_file(root, &error)])?;
     let files = listed::ListedFiles::new(root, Box::new(disk));
-    let root = root_package(Box::new(files));
-    let mut packages = dependencies::packages(folder, root, sources, library)?;
+    let package = root_package(Box::new(files));
+    let mut packages = dependencies::packages(root, package, sources, library)?;
     if let Some(manifest) = manifest {
         add_glsl(&mut packages, manifest, sources)?;
     }

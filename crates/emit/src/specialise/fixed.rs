@@ -126,12 +126,14 @@ pub fn default_values(validated: &Validated, index: usize) -> Result<DefaultValu
         let values = all.filter_map(|(handle, one)| Some((handle, literal(one)?))).collect();
         return Ok(DefaultValues { values, workgroup_size: point.workgroup_size });
     }
-    let without: Overrides = module
-        .overrides
-        .iter()
-        .filter(|(_, one)| one.init.is_none())
-        .map(|(handle, _)| handle)
-        .collect();
+    Ok(values_in(validated, index)?.1)
+}
+
+/// As [`default_values`], together with the module that naga computed them in.
+fn values_in(validated: &Validated, index: usize) -> Result<(Module, DefaultValues), Diagnostic> {
+    let module = &validated.module;
+    let point = &module.entry_points[index];
+    let without = without_value(module);
     let needed = deciding_size(module, point);
     if let Some(missing) = needed.intersection(&without).next() {
         return Err(missing_value(shown_name(module, *missing), "the size of a workgroup"));
@@ -150,7 +152,14 @@ pub fn default_values(validated: &Validated, index: usize) -> Result<DefaultValu
         [only] => only.workgroup_size,
         all => all.get(index).map_or(point.workgroup_size, |one| one.workgroup_size),
     };
-    Ok(DefaultValues { values: values.collect(), workgroup_size })
+    let values = values.collect();
+    Ok((made, DefaultValues { values, workgroup_size }))
+}
+
+/// The overrides that have a value only if the host gives it.
+fn without_value(module: &Module) -> Overrides {
+    let all = module.overrides.iter().filter(|(_, one)| one.init.is_none());
+    all.map(|(handle, _)| handle).collect()
 }
 
 /// The module of an entry point with the values of all overrides. Those without a value are 1: naga
@@ -180,39 +189,32 @@ fn variable_name(handle: Handle<GlobalVariable>) -> String {
     format!("lamplight_variable_{}", handle.index())
 }
 
-/// Gives the variables whose initial values are computed from overrides those values.
+/// Gives the variables whose initial values name overrides those values. `made` is the module that
+/// naga computed them in.
 fn put_initial_values(
-    validated: &Validated,
+    original: &Module,
+    made: &Module,
     module: &mut Module,
-    point: &EntryPoint,
 ) -> Result<(), Diagnostic> {
-    let computed = |variable: &GlobalVariable| {
-        let named = variable.init.map(|init| {
-            let mut named = Overrides::new();
-            collect_named(&validated.module, init, &mut named);
-            with_named(&validated.module, named)
-        });
-        named.filter(|named| !named.is_empty())
-    };
-    let all = validated.module.global_variables.iter();
-    let open: Vec<_> = all.filter_map(|(handle, one)| Some((handle, computed(one)?))).collect();
-    if open.is_empty() {
-        return Ok(());
-    }
-    let is_missing = |handle: &Handle<Override>| validated.module.overrides[*handle].init.is_none();
-    let without: Overrides = validated.module.overrides.iter().map(|(handle, _)| handle).collect();
-    let without: Overrides = without.into_iter().filter(|handle| is_missing(handle)).collect();
-    let made = module_of_defaults(validated, point, &without)?;
-    for (handle, named) in open {
+    let without = without_value(original);
+    for (handle, variable) in original.global_variables.iter() {
+        let mut named = Overrides::new();
+        if let Some(init) = variable.init {
+            collect_named(original, init, &mut named);
+        }
+        let named = with_named(original, named);
+        if named.is_empty() {
+            continue;
+        }
         if let Some(missing) = named.intersection(&without).next() {
-            let name = shown_name(&validated.module, *missing);
+            let name = shown_name(original, *missing);
             return Err(missing_value(name, "the initial value of a variable"));
         }
         let name = variable_name(handle);
         // naga leaves out the variables that the entry point does not use.
         let found = made.global_variables.iter().find(|(_, one)| one.name.as_ref() == Some(&name));
         module.global_variables[handle].init = match found.and_then(|(_, one)| one.init) {
-            Some(init) => Some(copied_value(&made, init, module)?),
+            Some(init) => Some(copied_value(made, init, module)?),
             None => None,
         };
     }
@@ -285,7 +287,8 @@ pub fn with_constants(
     if deciding.is_empty() {
         return Ok(None);
     }
-    let DefaultValues { values, workgroup_size } = default_values(validated, index)?;
+    let (made, defaults) = values_in(validated, index)?;
+    let DefaultValues { values, workgroup_size } = defaults;
     let mut module = validated.module.clone();
     module.entry_points = vec![module.entry_points.swap_remove(index)];
     let fixed: BTreeMap<Handle<Override>, Literal> =
@@ -301,8 +304,7 @@ pub fn with_constants(
         (point.workgroup_size, point.workgroup_size_overrides) = (workgroup_size, None);
     }
     put_lengths(&mut module, &fixed)?;
-    let point = &validated.module.entry_points[index];
-    put_initial_values(validated, &mut module, point)?;
+    put_initial_values(&validated.module, &made, &mut module)?;
     // Whatever still names an override without a value keeps it, and the caller refuses it.
     for (handle, value) in &fixed {
         let init = Expression::Literal(*value);

@@ -178,7 +178,7 @@ impl ExpressionText<'_> {
                 };
                 let parts = components.iter().map(of).collect::<Result<Vec<_>, String>>()?;
                 let size = size as u8;
-                format!("vec{size}<{}>({})", scalar_name(scalar.kind)?, parts.join(", "))
+                format!("vec{size}<{}>({})", scalar_name(scalar)?, parts.join(", "))
             }
             Expression::Splat { size, value } => format!("vec{}({})", *size as u8, of(value)?),
             Expression::Unary { op, expr } => {
@@ -196,11 +196,10 @@ impl ExpressionText<'_> {
                 format!("select({}, {}, {})", of(reject)?, of(accept)?, of(condition)?)
             }
             Expression::As { expr, kind, convert } => {
-                let ty = scalar_name(*kind)?;
-                match convert {
-                    Some(_) => format!("{ty}({})", of(expr)?),
-                    None => format!("bitcast<{ty}>({})", of(expr)?),
-                }
+                // Without conversion the bits are kept, of which overrides have 32.
+                let ty = scalar_name(Scalar { kind: *kind, width: convert.unwrap_or(4) })?;
+                let name = convert.map_or_else(|| format!("bitcast<{ty}>"), |_| ty.to_owned());
+                format!("{name}({})", of(expr)?)
             }
             Expression::Math { fun, arg, arg1, arg2, arg3 } => {
                 let name = fun.try_to_wgsl().ok_or_else(unwritable)?;
@@ -217,13 +216,14 @@ fn unwritable() -> String {
     "a default or a size is computed from overrides in a way that only functions allow".to_owned()
 }
 
-fn scalar_name(kind: ScalarKind) -> Result<&'static str, String> {
-    match kind {
-        ScalarKind::Sint => Ok("i32"),
-        ScalarKind::Uint => Ok("u32"),
-        ScalarKind::Float => Ok("f32"),
-        ScalarKind::Bool => Ok("bool"),
-        ScalarKind::AbstractInt | ScalarKind::AbstractFloat => Err(unwritable()),
+/// The types that an `override` may have, but for `f16`, whose literals are not written either.
+fn scalar_name(scalar: Scalar) -> Result<&'static str, String> {
+    match scalar {
+        Scalar::I32 => Ok("i32"),
+        Scalar::U32 => Ok("u32"),
+        Scalar::F32 => Ok("f32"),
+        Scalar { kind: ScalarKind::Bool, width: _ } => Ok("bool"),
+        _ => Err(unwritable()),
     }
 }
 

@@ -53,8 +53,7 @@ impl Around<'_> {
     }
 
     fn projection(&self) -> DMat4 {
-        let shot = [self.size[0].max(1), self.size[1].max(1)];
-        eye_projection_for(&self.eye, shot, self.clip)
+        eye_projection_for(&self.eye, self.size.map(|side| side.max(1)), self.clip)
     }
 
     /// From the world to the clip space of a shadow map of the first lamp.

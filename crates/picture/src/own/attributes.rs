@@ -95,8 +95,9 @@ fn attribute_words(input: &Varying, corner: &Vertex, tint: DVec3) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::{attribute_mesh, vertex_count};
+    use crate::own::inputs::tests::input;
     use glam::{DMat4, DVec3};
-    use lamplight_bundle::{Reflection, Stage, Varying};
+    use lamplight_bundle::{Reflection, Stage};
     use lamplight_execute::frame::VertexFormat;
     use lamplight_scenes::Shape;
     use lamplight_scenes::sets::{Material, Object};
@@ -104,15 +105,6 @@ mod tests {
     /// Attributes have what their names say, in the order of the stage; integers are 0.
     #[test]
     fn attributes_by_name() {
-        let input = |name: &str, ty: &str, location| Varying {
-            name: Some(name.to_owned()),
-            location: Some(location),
-            builtin: None,
-            ty: ty.to_owned(),
-            shape: None,
-            interpolation: None,
-            sampling: None,
-        };
         let inputs = vec![
             input("aNormal", "vec3<f32>", 0),
             input("joints", "vec4<u32>", 1),

@@ -20,12 +20,11 @@ use super::textures::{
     default_content, default_texture, named_texture, plain_sampler, texture_levels,
 };
 use super::values::{Chosen, Leaf, assign_values};
-use super::{GivenTexture, OwnRequest, TextureContent, refused};
+use super::{GivenTexture, OwnRequest, TextureContent, at_given, refused};
 use crate::frame::{buffer_leaves, pack_buffer};
+use crate::sketch::UNIFORM_BYTES;
 use crate::{Shot, Surroundings};
 
-/// Bytes of a uniform buffer that every device takes.
-const UNIFORM_BYTES: u32 = 64 << 10;
 /// The most bytes of a storage buffer of zeros.
 const STORAGE_BYTES: u32 = 16 << 20;
 /// Bytes that a storage buffer has beyond what is declared, for an array without a length.
@@ -39,6 +38,7 @@ const ROWS: usize = 200;
 type Place = (u32, u32);
 
 /// A binding of one stage, or of both.
+#[derive(Clone, Copy)]
 struct Bound<'s> {
     binding: &'s Binding,
     stage: &'s OwnStage,
@@ -99,10 +99,7 @@ impl<'s> BoundStages<'s> {
                 true => error.note("help: there are no textures"),
                 false => error.note(format!("textures: {}", known.join(", "))),
             };
-            match given.span {
-                Some(span) => error.at(span, "given here"),
-                None => error,
-            }
+            at_given(error, given.span)
         };
         let errors: Diagnostics = wrong.map(error).collect();
         if errors.is_empty() { Ok(()) } else { Err(errors) }
@@ -114,7 +111,7 @@ impl<'s> BoundStages<'s> {
 
     fn bind_all(&mut self, request: &OwnRequest, shot: &Shot) -> Result<(), Diagnostics> {
         let mut errors = Diagnostics::new();
-        for bound in std::mem::take(&mut self.bound) {
+        for bound in self.bound.clone() {
             let (binding, place) = (bound.binding, (bound.binding.group, bound.binding.binding));
             match binding.kind {
                 BindingKind::Sampler | BindingKind::ComparisonSampler => {
@@ -131,7 +128,6 @@ impl<'s> BoundStages<'s> {
                 }
                 BindingKind::Uniform | BindingKind::StorageTexture => {}
             }
-            self.bound.push(bound);
         }
         if errors.is_empty() { Ok(()) } else { Err(errors) }
     }
@@ -182,12 +178,11 @@ impl<'s> BoundStages<'s> {
     pub fn seen_matrices(&self) -> (bool, bool) {
         let leaves: Vec<Leaf> =
             self.bound.iter().flat_map(leaves_of).map(|(_, leaf)| leaf).collect();
-        let names = leaves
-            .iter()
-            .filter(|leaf| leaf.ty.starts_with("mat4"))
-            .map(|leaf| leaf.path.rsplit('.').next().unwrap_or_default());
-        let lacks_view = lacks_view(names.clone());
-        (names.clone().any(is_model_view) || lacks_view, lacks_view)
+        let matrices = leaves.iter().filter(|leaf| leaf.ty.starts_with("mat4"));
+        let names: Vec<&str> =
+            matrices.map(|leaf| leaf.path.rsplit('.').next().unwrap_or_default()).collect();
+        let lacks_view = lacks_view(&names);
+        (names.into_iter().any(is_model_view) || lacks_view, lacks_view)
     }
 
     /// The uniform buffers of an object.
@@ -231,15 +226,12 @@ impl<'s> BoundStages<'s> {
         let (mut rows, mut known) = (Vec::new(), BTreeSet::new());
         for bound in self.bound.iter().filter(|one| one.binding.kind == BindingKind::Uniform) {
             for (_, leaf) in leaves_of(bound) {
-                let (_, value, from) = self.leaf_value(bound, &leaf, around);
-                if is_padding(bound, &leaf.path) {
+                if is_padding(bound, &leaf.path) || !known.insert(leaf.path.clone()) {
                     continue;
                 }
+                let (_, value, from) = self.leaf_value(bound, &leaf, around);
                 let (name, ty) = (leaf.path, short_type(&leaf.ty));
-                let row = Row { kind: RowKind::Uniform, name, ty, value, from };
-                if known.insert(row.name.clone()) {
-                    rows.push(row);
-                }
+                rows.push(Row { kind: RowKind::Uniform, name, ty, value, from });
             }
         }
         let mut notes = self.notes.clone();
@@ -334,10 +326,7 @@ fn given_content(
                 TextureContent::Sky(_) => "an environment",
             };
             let error = refused(&format!("`{name}: {ty}` cannot hold `{}`, {what}", given.text));
-            Err(match given.span {
-                Some(span) => error.at(span, "given here"),
-                None => error,
-            })
+            Err(at_given(error, given.span))
         }
     }
 }

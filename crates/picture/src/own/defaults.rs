@@ -139,7 +139,7 @@ const ALONE: &[(&[&str], Meaning)] = &[
 pub fn uniform_meaning(block: &str, name: &str, ty: NumberType) -> Option<Meaning> {
     let (outer, own) = (name_words(block), name_words(name));
     let both: Vec<String> = outer.iter().chain(&own).cloned().collect();
-    // A member of a light or a camera means what it is of it.
+    // In a block of a light, a camera or fog, the words of block and name together count first.
     let is_part = [LIGHT, EYE, FOG].iter().any(|words| has_word(&outer, words));
     let order = if is_part { [&both, &own] } else { [&own, &both] };
     let ruled = order.into_iter().find_map(|words| {

@@ -75,12 +75,14 @@ fn add_values(
             format!("`{name}` is a number, a boolean, a list of numbers, or a colour in quotes")
         }),
     };
-    let (name, origin, span) = (name.to_owned(), Origin::File, Some(span));
     match read {
-        Ok(value) => given.push(GivenValue { name, value, origin, span }),
-        Err(message) => errors.extend(
-            span.map(|span| Diagnostic::error(codes::DATA_SYNTAX, message).at(span, "given here")),
-        ),
+        Ok(value) => {
+            let (name, origin, span) = (name.to_owned(), Origin::File, Some(span));
+            given.push(GivenValue { name, value, origin, span });
+        }
+        Err(message) => {
+            errors.push(Diagnostic::error(codes::DATA_SYNTAX, message).at(span, "given here"));
+        }
     }
 }
 

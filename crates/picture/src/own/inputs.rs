@@ -72,7 +72,7 @@ const RULES: &[(&[&[&str]], Source)] = &[
     ),
     (&[&["light", "lamp"], COLOR], Source::Color),
     (&[LIGHT], Source::ToLight),
-    (&[&["uv", "uvs", "st", "tex", "texcoord", "coord", "coords", "texture", "map"]], Source::Uv),
+    (&[&["uv", "uvs", "st", "tex", "coord", "coords", "texture", "map"]], Source::Uv),
     (&[EYE, PLACE], Source::SeenPosition),
     (&[EYE], Source::ToEye),
     (&[COLOR], Source::Color),
@@ -120,18 +120,13 @@ pub fn attribute_source(input: &Varying) -> (Source, Hint) {
     }
 }
 
-/// The name of an input, or its place.
-pub fn input_label(input: &Varying) -> String {
-    let place = || format!("location({})", input.location.unwrap_or_default());
-    input.name.clone().unwrap_or_else(place)
-}
-
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::{Hint, Source, attribute_source, input_source};
     use lamplight_bundle::Varying;
 
-    fn input(name: &str, ty: &str, location: u32) -> Varying {
+    /// An input or an attribute.
+    pub fn input(name: &str, ty: &str, location: u32) -> Varying {
         Varying {
             name: Some(name.to_owned()),
             location: Some(location),

@@ -1,20 +1,12 @@
 //! The vertex stage that is made for a fragment stage alone.
 
-use std::fmt::Write as _;
-use std::sync::Arc;
-
-use lamplight_bundle::{Language, Reflection, Varying};
-use lamplight_compose::resolve::{self, Packages};
-use lamplight_compose::{self as compose, Options};
+use lamplight_bundle::{Reflection, Varying};
 use lamplight_diagnostic::Diagnostics;
-use lamplight_diagnostic::source::SourceSet;
-use lamplight_emit::reflect;
-use lamplight_permute::Settings;
-use lamplight_validate::validate;
 
 use super::inputs::{Source, input_source};
 use super::shape::NumberType;
 use crate::frame::ReadyStage;
+use crate::sketch::{given_inputs, vertex_stage};
 
 /// The group of the buffers of the made stage: one that the fragment stage does not use.
 fn free_group(fragment: &Reflection) -> u32 {
@@ -46,16 +38,7 @@ pub fn is_flat(fragment: &Reflection) -> bool {
 /// # Errors
 /// Those of naga, for an input whose type no vertex stage can give.
 pub fn made_vertex(fragment: &Reflection, flat: bool) -> Result<ReadyStage, Diagnostics> {
-    const PATH: &str = "vertex.wesl";
-    let text = if flat { flat_text(fragment) } else { model_text(fragment) };
-    let packages = Packages::of_text(PATH, text);
-    let graph = resolve::load(&mut SourceSet::default(), &packages, PATH, Language::Wesl)?;
-    let composed = compose::compose(&graph, &Settings::default(), &Options::default())?;
-    let validated = Arc::new(validate(&composed)?);
-    let reflection = reflect(&validated, "vs_main").map_err(|problem| vec![problem])?;
-    let functions = Arc::from(Vec::new());
-    let text = composed.text.into();
-    Ok(ReadyStage { validated, entry: "vs_main", reflection, text, functions })
+    vertex_stage(if flat { flat_text(fragment) } else { model_text(fragment) })
 }
 
 /// The stage of a triangle that covers the picture. `uv` counts from its upper left. Words in capitals
@@ -128,13 +111,13 @@ LINES    return given;
 ";
 
 fn flat_text(fragment: &Reflection) -> String {
-    let (outputs, lines) = given_inputs(fragment);
+    let (outputs, lines) = given_inputs(fragment, &given_value);
     FLAT.replace("OUTPUTS", &outputs).replace("LINES", &lines)
 }
 
 fn model_text(fragment: &Reflection) -> String {
     let (group, [camera, object, around]) = free_places(fragment);
-    let (outputs, lines) = given_inputs(fragment);
+    let (outputs, lines) = given_inputs(fragment, &given_value);
     MODEL
         .replace("GROUP", &group.to_string())
         .replace("CAMERA", &camera.to_string())
@@ -142,29 +125,6 @@ fn model_text(fragment: &Reflection) -> String {
         .replace("AROUND", &around.to_string())
         .replace("OUTPUTS", &outputs)
         .replace("LINES", &lines)
-}
-
-/// The outputs of the vertex stage, and the statements that write them.
-fn given_inputs(fragment: &Reflection) -> (String, String) {
-    let (mut outputs, mut lines) = (String::new(), String::new());
-    for input in &fragment.inputs {
-        let Some(location) = input.location else { continue };
-        let (ty, interpolation) = (&input.ty, interpolation_text(input));
-        let _ =
-            writeln!(outputs, "    @location({location}) {interpolation}given_{location}: {ty},");
-        let value = given_value(input);
-        let _ = writeln!(lines, "    given.given_{location} = {value};");
-    }
-    (outputs, lines)
-}
-
-fn interpolation_text(input: &Varying) -> String {
-    match (input.interpolation.as_deref(), input.sampling.as_deref()) {
-        (Some(kind), Some(sampling)) => format!("@interpolate({kind}, {sampling}) "),
-        (Some(kind), None) => format!("@interpolate({kind}) "),
-        (None, _) if NumberType::of(&input.ty).is_integer => "@interpolate(flat) ".to_owned(),
-        (None, _) => String::new(),
-    }
 }
 
 fn given_value(input: &Varying) -> String {

@@ -16,7 +16,7 @@ const NORMAL: &[&str] = &["normal", "n"];
 /// Matrices that leave things as they are.
 const IDENTITY: &[&str] = &["texture", "tex", "uv", "bone", "bones", "joint", "joints", "color"];
 /// Words for the matrix that does all.
-const WHOLE: &[&str] = &["transform", "matrix", "mat", "mvp", "transformation"];
+const WHOLE: &[&str] = &["transform", "matrix", "mat", "transformation"];
 
 /// A space, from that of the object on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,12 +39,12 @@ pub fn is_model_view(name: &str) -> bool {
 
 /// Whether matrices of these names leave out the view: there is a projection and a model, and nothing
 /// in between.
-pub fn lacks_view<'n>(names: impl Iterator<Item = &'n str> + Clone) -> bool {
+pub fn lacks_view(names: &[&str]) -> bool {
     let has = |name: &str, known: &[&str]| has_word(&name_words(name), known);
     let is_step = |name: &str| has(name, PROJECTION) && !has(name, MODEL) && !has(name, LIGHT);
     let is_other = |name: &str| has(name, VIEW) || has(name, &["from"]);
-    let mut all = names.clone();
-    all.any(is_step) && names.clone().any(|name| has(name, MODEL)) && !names.clone().any(is_other)
+    let any = |is: &dyn Fn(&str) -> bool| names.iter().any(|name| is(name));
+    any(&is_step) && any(&|name| has(name, MODEL)) && !any(&is_other)
 }
 
 /// The numbers of a matrix, column by column, and what it is. `None` if its name says nothing.
@@ -206,9 +206,9 @@ mod tests {
         let seen = Around { seen_model: true, ..around.clone() };
         let found = numbers("model", "mat4x4<f32>", &seen);
         assert!(close(&found, &(view * model).to_cols_array()), "{found:?}");
-        assert!(lacks_view(["projection", "model"].into_iter()));
-        assert!(!lacks_view(["projection", "view", "model"].into_iter()));
-        assert!(!lacks_view(["uMVP", "model"].into_iter()));
+        assert!(lacks_view(&["projection", "model"]));
+        assert!(!lacks_view(&["projection", "view", "model"]));
+        assert!(!lacks_view(&["uMVP", "model"]));
         assert!(is_model_view("modelViewMatrix") && !is_model_view("uMVP"));
     }
 }

@@ -40,6 +40,7 @@ use std::collections::BTreeMap;
 
 use glam::{DMat4, DVec3};
 
+use lamplight_bundle::{Binding, Varying};
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_emit::reflect;
@@ -50,13 +51,14 @@ use lamplight_scenes::sets::{Object, Scene, TextureMap};
 use self::around::{Around, around_of};
 use self::attributes::{attribute_mesh, clip_square, indexed_mesh, vertex_count};
 use self::bindings::BoundStages;
-use self::inputs::{Hint, Source, attribute_source, input_label, input_source};
+use self::inputs::{Hint, Source, attribute_source, input_source};
 use self::shape::{NumberType, short_type};
 use self::table::{Origin, Row, RowKind};
 use crate::frame::{ReadyStage, Stages};
 use crate::mesh::object_mesh;
 use crate::pixels::Background;
 use crate::prepared::PreparedPass;
+use crate::sketch::{input_label, white_object};
 use crate::values::PassCamera;
 use crate::{Picture, Shot, Surroundings};
 
@@ -110,6 +112,14 @@ pub struct OwnPicture {
 /// The error about a shader that cannot be drawn.
 pub(crate) fn refused(message: &str) -> Diagnostic {
     Diagnostic::error(codes::PICTURE_INVALID, message)
+}
+
+/// An error about a value or a texture that somebody gave, at its place in a file if it is from one.
+fn at_given(error: Diagnostic, span: Option<Span>) -> Diagnostic {
+    match span {
+        Some(span) => error.at(span, "given here"),
+        None => error,
+    }
 }
 
 /// What the stages are drawn on.
@@ -233,7 +243,7 @@ fn ground_objects(ground: &Ground, scene: &Scene) -> Vec<Object> {
     match ground {
         Ground::Model => scene.objects.clone(),
         Ground::Square | Ground::Triangle | Ground::Indices(_) => {
-            vec![models::object(clip_square())]
+            vec![white_object(clip_square())]
         }
     }
 }
@@ -247,7 +257,7 @@ fn ground_mesh(ground: &Ground, stages: &OwnStages, object: &Object, vertex: &Re
     }
 }
 
-type StageWithCamera = (ReadyStage, Option<lamplight_bundle::Binding>);
+type StageWithCamera = (ReadyStage, Option<Binding>);
 
 /// The vertex stage that is made for a fragment stage.
 fn made_stage(fragment: &ReadyStage, ground: &Ground) -> Result<StageWithCamera, Diagnostics> {
@@ -261,16 +271,15 @@ fn made_stage(fragment: &ReadyStage, ground: &Ground) -> Result<StageWithCamera,
 fn placed_stage(stages: &OwnStages, vertex: &ReadyStage) -> Result<StageWithCamera, Diagnostics> {
     let fragment = &stages.fragment.ready.reflection;
     let taken = |place: &(u32, u32)| {
-        let all = vertex.reflection.bindings.iter().chain(&fragment.bindings);
-        all.into_iter().any(|one| (one.group, one.binding) == *place)
+        let mut all = vertex.reflection.bindings.iter().chain(&fragment.bindings);
+        all.any(|one| (one.group, one.binding) == *place)
     };
     let place = (0..).map(|binding| (0, binding)).find(|place| !taken(place)).unwrap_or_default();
     let validated = placed::placed_vertex(&vertex.validated, place).map_err(|error| vec![error])?;
     let reflection = reflect(&validated, vertex.entry).map_err(|error| vec![error])?;
-    let is_it = |one: &&lamplight_bundle::Binding| (one.group, one.binding) == place;
+    let is_it = |one: &&Binding| (one.group, one.binding) == place;
     let camera = reflection.bindings.iter().find(is_it).cloned();
-    let camera =
-        camera.map(|one| lamplight_bundle::Binding { name: placed::PLACE.to_owned(), ..one });
+    let camera = camera.map(|one| Binding { name: placed::PLACE.to_owned(), ..one });
     Ok((ReadyStage { validated: validated.into(), reflection, ..vertex.clone() }, camera))
 }
 
@@ -295,7 +304,7 @@ fn made_buffers(
         })
     };
     let own = vertex.reflection.bindings.iter().filter(|one| one.name != "camera");
-    let buffer = |binding: &lamplight_bundle::Binding| {
+    let buffer = |binding: &Binding| {
         let bytes = crate::frame::pack_buffer(binding, &number).map_err(|error| vec![error])?;
         Ok(((binding.group, binding.binding), bytes))
     };
@@ -309,7 +318,7 @@ fn input_rows(stages: &OwnStages) -> Vec<Row> {
         None => (RowKind::Input, &stages.fragment.ready.reflection),
     };
     let located = reflection.inputs.iter().filter(|input| input.location.is_some());
-    let row = |input: &lamplight_bundle::Varying| {
+    let row = |input: &Varying| {
         let (source, hint) = match kind {
             RowKind::Attribute => attribute_source(input),
             _ => input_source(input),

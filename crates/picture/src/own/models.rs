@@ -2,13 +2,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use glam::{DMat4, DQuat, DVec3};
-
 use lamplight_scenes::Shape;
-use lamplight_scenes::sets::{self, Eye, Material, Object, Scene};
+use lamplight_scenes::sets::{self, Eye, Scene};
 
 use super::around::LAMP;
-use crate::sketch::MODELS;
+use crate::sketch::{MODELS, turned_eye, white_object};
 
 /// The model or scene of that name.
 pub fn named_scene(name: &str) -> Option<Scene> {
@@ -23,23 +21,17 @@ pub fn model_names() -> impl Iterator<Item = &'static str> + Clone {
 
 /// The sphere, which is drawn where nobody chooses a model.
 pub fn default_scene() -> Scene {
-    scene_of(Shape::sphere(1.0, (96, 48)))
-}
-
-/// A shape of the colour white at the origin.
-pub fn object(shape: Shape) -> Object {
-    Object::made(shape, DMat4::IDENTITY, DVec3::ONE, Material::default())
+    let (_, sphere) = MODELS[0];
+    scene_of(sphere())
 }
 
 fn scene_of(shape: Shape) -> Scene {
-    Scene::of_model(vec![object(shape)], eye(), vec![LAMP])
+    Scene::of_model(vec![white_object(shape)], eye(), vec![LAMP])
 }
 
 /// The viewer: a little to the left and above, so that a cube shows three of its sides.
 fn eye() -> Eye {
-    let (around, up) = (-0.5, 0.3 * FRAC_PI_2);
-    let turned = DQuat::from_rotation_y(around) * DQuat::from_rotation_x(-up);
-    Eye { position: turned * DVec3::Z * 4.0, target: DVec3::ZERO, fov_y: 0.6, near: 0.5, far: 10.0 }
+    turned_eye([-0.5, 0.3 * FRAC_PI_2])
 }
 
 #[cfg(test)]

@@ -71,7 +71,7 @@ fn replace_entry(module: &mut Module, matrix: Handle<GlobalVariable>) -> Option<
     inner.name = Some("lamplight_inner".to_owned());
     let inner = module.functions.append(inner, Span::UNDEFINED);
     let members = match &module.types[result.ty].inner {
-        TypeInner::Struct { members, .. } => Some(members.clone()),
+        TypeInner::Struct { members, span: _ } => Some(members.clone()),
         _ => None,
     };
     let function = Function { arguments, result: Some(result.clone()), ..Function::default() };
@@ -81,7 +81,7 @@ fn replace_entry(module: &mut Module, matrix: Handle<GlobalVariable>) -> Option<
         None => moved(&mut body, returned, matrix),
         Some(members) => {
             let is_position = |member: &StructMember| {
-                matches!(member.binding, Some(Binding::BuiltIn(BuiltIn::Position { .. })))
+                matches!(member.binding, Some(Binding::BuiltIn(BuiltIn::Position { invariant: _ })))
             };
             let at = members.iter().position(is_position)?;
             let mut parts: Vec<_> =

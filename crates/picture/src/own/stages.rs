@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use lamplight_bundle::{BindingKind, Language, Reflection, SourceClip, Varying};
+use lamplight_bundle::{Binding, BindingKind, Language, SourceClip, Varying};
 use lamplight_compose::{Composed, SourceMap};
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
@@ -17,8 +17,9 @@ use naga::ShaderStage;
 
 use super::refused;
 use crate::frame::{ReadyStage, bound_loops};
+use crate::sketch::input_label;
 
-/// How many trips the loops of a fragment may make, so that no text keeps a device for ever.
+/// How many trips the loops of an invocation may make, so that no text keeps a device for ever.
 const TRIPS: u32 = 1 << 18;
 
 /// A text of an author's, as WGSL.
@@ -49,6 +50,14 @@ pub struct OwnStage {
 pub struct OwnStages {
     pub vertex: Option<OwnStage>,
     pub fragment: OwnStage,
+}
+
+impl OwnStage {
+    /// What is bound at a group and binding.
+    fn binding_at(&self, place: (u32, u32)) -> Option<&Binding> {
+        let mut all = self.ready.reflection.bindings.iter();
+        all.find(|one| (one.group, one.binding) == place)
+    }
 }
 
 impl OwnStages {
@@ -175,12 +184,11 @@ fn one_of<'t>(
 }
 
 fn no_fragment(texts: &[OwnText]) -> Diagnostic {
-    let known = names_of(texts, None);
     let stage_of = |(_, point): (&OwnText, &naga::EntryPoint)| {
         format!("`{}` is a {} stage", point.name, format!("{:?}", point.stage).to_lowercase())
     };
     let stages: Vec<String> = points(texts).map(stage_of).collect();
-    let message = match known.is_empty() {
+    let message = match stages.is_empty() {
         true => "there is no entry point to draw".to_owned(),
         false => format!("there is no fragment stage to draw: {}", stages.join(", ")),
     };
@@ -208,9 +216,7 @@ fn ready_stage(text: &OwnText, name: &str, entry: &'static str) -> Result<OwnSta
         entry.clone_into(&mut point.name);
     }
     let reflection = reflect(&validated, entry).map_err(|problem| vec![problem])?;
-    if reflection.stage == lamplight_bundle::Stage::Fragment {
-        bound_loops(&mut validated.module, TRIPS);
-    }
+    bound_loops(&mut validated.module, TRIPS);
     let validated = Arc::new(validated);
     let functions = Arc::from(Vec::new());
     let ready = ReadyStage { validated, entry, reflection, text: text.text.clone(), functions };
@@ -223,7 +229,7 @@ fn fix_overrides(validated: &mut Validated, name: &str) -> Result<(), Diagnostic
     if validated.module.overrides.is_empty() {
         return Ok(());
     }
-    let Validated { module, info, .. } = &*validated;
+    let (module, info) = (&validated.module, &validated.info);
     let stage = module.entry_points.first().map_or(ShaderStage::Fragment, |point| point.stage);
     let none = naga::back::PipelineConstants::default();
     let fixed = on_large_stack(|| {
@@ -265,7 +271,7 @@ fn check_between(vertex: &OwnStage, fragment: &OwnStage) -> Result<(), Diagnosti
     let located = fragment.ready.reflection.inputs.iter().filter(|one| one.location.is_some());
     for input in located {
         let given = outputs.iter().find(|output| output.location == input.location);
-        let name = super::inputs::input_label(input);
+        let name = input_label(input);
         let place = input.location.unwrap_or_default();
         let message = match given {
             Some(output) if output.ty == input.ty => continue,
@@ -290,18 +296,16 @@ fn check_between(vertex: &OwnStage, fragment: &OwnStage) -> Result<(), Diagnosti
 
 /// The bindings at one place that differ in both stages.
 fn clashes(vertex: &OwnStage, fragment: &OwnStage) -> Vec<(u32, u32)> {
-    let find = |reflection: &Reflection, place| {
-        reflection.bindings.iter().find(|one| (one.group, one.binding) == place).cloned()
+    let differs = |one: &Binding, other: &Binding| match one.kind {
+        kind if kind != other.kind => true,
+        BindingKind::Uniform | BindingKind::Storage => one.size != other.size,
+        _ => one.ty != other.ty,
     };
-    let differ = |place: &(u32, u32)| {
-        let both =
-            (find(&vertex.ready.reflection, *place), find(&fragment.ready.reflection, *place));
-        let (Some(one), Some(other)) = both else { return false };
-        let is_buffer = matches!(one.kind, BindingKind::Uniform | BindingKind::Storage);
-        one.kind != other.kind
-            || if is_buffer { one.size != other.size } else { one.ty != other.ty }
-    };
-    vertex.places.keys().copied().filter(differ).collect()
+    let places = vertex.ready.reflection.bindings.iter().filter_map(|one| {
+        let place = (one.group, one.binding);
+        fragment.binding_at(place).is_some_and(|other| differs(one, other)).then_some(place)
+    });
+    places.collect()
 }
 
 /// Moves what GLSL has in two files under numbers that it did not choose, such as push constants.
@@ -336,11 +340,8 @@ fn separate_numbered(vertex: &OwnStage, fragment: &mut OwnStage) {
 /// Two stages of separate files must not bind different things to one place.
 fn check_shared(vertex: &OwnStage, fragment: &OwnStage) -> Result<(), Diagnostic> {
     let Some(place) = clashes(vertex, fragment).into_iter().next() else { return Ok(()) };
-    let name = |stage: &OwnStage| {
-        let mut all = stage.ready.reflection.bindings.iter();
-        let found = all.find(|one| (one.group, one.binding) == place);
-        found.map_or(String::new(), |one| one.name.clone())
-    };
+    let name =
+        |stage: &OwnStage| stage.binding_at(place).map(|one| one.name.clone()).unwrap_or_default();
     let (group, binding) = place;
     let (one, other) = (name(vertex), name(fragment));
     let message = format!("`{one}` and `{other}` are both at group {group}, binding {binding}");

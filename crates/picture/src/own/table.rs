@@ -12,7 +12,6 @@ pub enum RowKind {
     Input,
     Uniform,
     Texture,
-    Storage,
 }
 
 /// Where a value comes from.

@@ -116,7 +116,8 @@ fn smooth_noise(at: DVec2, seed: u32) -> f64 {
     (4.0 * octave(8) + 2.0 * octave(16) + octave(32)) / 7.0
 }
 
-/// A number in [0, 1] of three others (Wang's hash of them, one after another).
+/// A number in [0, 1] of three others, mixed in one after another. The multipliers are those of xxHash
+/// and MurmurHash3.
 fn hashed(x: u32, y: u32, seed: u32) -> f64 {
     let mix = |state: u32, word: u32| {
         let mut state = (state ^ word).wrapping_mul(0x9e37_79b1);

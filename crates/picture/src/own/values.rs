@@ -1,12 +1,14 @@
-//! What an author gives: numbers and textures by the names of uniforms.
+//! What an author gives: numbers and colours by the names of uniforms.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics};
 use lamplight_scenes::linear_from_srgb;
 
-use super::refused;
 use super::shape::{NumberType, short_type};
 use super::table::Origin;
+use super::{at_given, refused};
 
 /// A value as somebody wrote it.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,7 +90,7 @@ pub struct Leaf {
 }
 
 /// The numbers of uniforms by their paths, with where they come from.
-pub type Chosen = std::collections::BTreeMap<String, (Vec<f64>, Origin)>;
+pub type Chosen = BTreeMap<String, (Vec<f64>, Origin)>;
 
 /// Gives values to uniforms. A name is a whole path, or the end of one that no other has.
 ///
@@ -100,31 +102,26 @@ pub fn assign_values(
     given: &[GivenValue],
     linear: bool,
 ) -> Result<Chosen, Diagnostics> {
+    // Stages of GLSL have blocks of their own, with uniforms of the same names.
+    let mut known = BTreeSet::new();
+    let leaves: Vec<&Leaf> = leaves.iter().filter(|leaf| known.insert(&leaf.path)).collect();
     let (mut chosen, mut errors) = (Chosen::new(), Diagnostics::new());
     let files = given.iter().filter(|value| value.origin == Origin::File);
     let options = given.iter().filter(|value| value.origin != Origin::File);
     for value in files.chain(options) {
-        match assign_one(leaves, value, linear) {
+        match assign_one(&leaves, value, linear) {
             Ok(found) => chosen.extend(found),
-            Err(error) => errors.push(match value.span {
-                Some(span) => error.at(span, "given here"),
-                None => error,
-            }),
+            Err(error) => errors.push(at_given(error, value.span)),
         }
     }
     if errors.is_empty() { Ok(chosen) } else { Err(errors) }
 }
 
-fn assign_one(leaves: &[Leaf], given: &GivenValue, linear: bool) -> Result<Chosen, Diagnostic> {
+fn assign_one(leaves: &[&Leaf], given: &GivenValue, linear: bool) -> Result<Chosen, Diagnostic> {
     let found = find_leaves(leaves, &given.name)?;
     let types: Vec<NumberType> = found.iter().map(|leaf| NumberType::of(&leaf.ty)).collect();
     let total: usize = types.iter().map(|ty| ty.count()).sum();
     let numbers = given.value.numbers(types[0], linear);
-    // Stages of GLSL have blocks of their own, with uniforms of the same names.
-    let is_repeated = found.iter().all(|leaf| leaf.path == found[0].path);
-    if is_repeated && numbers.len() == types[0].count() {
-        return Ok([(found[0].path.clone(), (numbers, given.origin))].into());
-    }
     if numbers.len() != total {
         let (name, ty) = (&found[0].path, short_type(&found[0].ty));
         let what = match found.len() {
@@ -154,16 +151,16 @@ fn counted(count: usize) -> String {
     if count == 1 { "1 number".to_owned() } else { format!("{count} numbers") }
 }
 
-/// The uniforms that a name means: one, or the elements of an array.
-fn find_leaves<'l>(leaves: &'l [Leaf], name: &str) -> Result<Vec<&'l Leaf>, Diagnostic> {
+/// The uniforms of a name: one, or the elements of an array.
+fn find_leaves<'l>(leaves: &[&'l Leaf], name: &str) -> Result<Vec<&'l Leaf>, Diagnostic> {
     let array = format!("{name}[");
     let is_it = |path: &str| path == name || path.starts_with(&array) && path.ends_with(']');
-    let whole: Vec<&Leaf> = leaves.iter().filter(|leaf| is_it(&leaf.path)).collect();
+    let whole: Vec<&Leaf> = leaves.iter().copied().filter(|leaf| is_it(&leaf.path)).collect();
     if !whole.is_empty() {
         return Ok(whole);
     }
     // The member of the only block that has one of this name.
-    let bases = leaves.iter().filter_map(|leaf| {
+    let bases = leaves.iter().copied().filter_map(|leaf| {
         let at = leaf.path.rfind(&format!(".{name}"))?;
         let rest = &leaf.path[at + 1 + name.len()..];
         (rest.is_empty() || rest.starts_with('[') && !rest.contains('.'))
@@ -183,7 +180,7 @@ fn find_leaves<'l>(leaves: &'l [Leaf], name: &str) -> Result<Vec<&'l Leaf>, Diag
     }
 }
 
-fn unknown_uniform(leaves: &[Leaf], name: &str) -> Diagnostic {
+fn unknown_uniform(leaves: &[&Leaf], name: &str) -> Diagnostic {
     let known: Vec<&str> = leaves.iter().map(|leaf| leaf.path.as_str()).collect();
     let ends: Vec<&str> = known.iter().filter_map(|path| path.rsplit('.').next()).collect();
     let error = refused(&format!("no stage reads a uniform `{name}`"));
@@ -236,6 +233,19 @@ mod tests {
         let expected = [1.0, 0.215_860_5, 0.0, 128.0 / 255.0];
         assert!(tint.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{tint:?}");
         assert_eq!(parse_value("#f00")?, UniformValue::Color(vec![1.0, 0.0, 0.0]));
+        Ok(())
+    }
+
+    /// Two stages of GLSL that declare the same uniforms get the same numbers.
+    #[test]
+    fn values_of_both_stages() -> Result<(), String> {
+        let both = [leaves(), leaves()].concat();
+        for (name, text, count) in [("tint", "1,2,3,4", 1), ("weights", "0.5,0.25", 2)] {
+            let (name, value) = (name.to_owned(), parse_value(text)?);
+            let given = GivenValue { name, value, origin: Origin::Option, span: None };
+            let found = assign_values(&both, &[given], true).map_err(|all| format!("{all:?}"))?;
+            assert_eq!(found.len(), count, "{text}");
+        }
         Ok(())
     }
 

@@ -1,5 +1,5 @@
 //! What stands between the tokens of WGSL: blanks and comments. WGSL has no strings, so `//` and
-//! `/*` always begin a comment.
+//! `/*` begin a comment everywhere but in the paths of files that `#import` has in quotes.
 
 /// Whether the character is one of WGSL's line breaks. Each of them ends a line comment.
 pub fn is_line_break(letter: char) -> bool {
@@ -53,13 +53,18 @@ pub fn comment_length(text: &str) -> usize {
 }
 
 /// The text with each byte of its comments replaced by a space, so that all else keeps its offset.
+/// Quotes end at the end of their line.
 pub fn without_comments(text: &str) -> String {
     let mut bare = String::with_capacity(text.len());
+    let mut is_quoted = false;
     while let Some(next) = text[bare.len()..].chars().next() {
-        match comment_length(&text[bare.len()..]) {
-            0 => bare.push(next),
-            length => bare.extend(std::iter::repeat_n(' ', length)),
+        let comment = if is_quoted { 0 } else { comment_length(&text[bare.len()..]) };
+        if comment > 0 {
+            bare.extend(std::iter::repeat_n(' ', comment));
+            continue;
         }
+        is_quoted = if is_quoted { !matches!(next, '"' | '\n') } else { next == '"' };
+        bare.push(next);
     }
     bare
 }

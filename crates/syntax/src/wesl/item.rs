@@ -148,12 +148,12 @@ impl ItemSplitter<'_, '_> {
         let visibility = visibility_at(self.tokens, attributes.end);
         let keyword = attributes.end + usize::from(visibility.is_some());
         match self.tokens.word(keyword) {
-            Some(Name::IMPORT) => self.import(at, keyword, attributes),
+            Some(Name::IMPORT) => self.import(at, attributes, visibility),
             Some(word @ (Name::ENABLE | Name::REQUIRES | Name::DIAGNOSTIC)) => {
                 self.directive(keyword, word, attributes)
             }
             word => match KINDS.iter().find(|(name, _)| Some(*name) == word) {
-                Some((_, kind)) => self.item(at, attributes, *kind),
+                Some((_, kind)) => self.item(at, attributes, visibility, *kind),
                 None => Err(self.tokens.expected(keyword, "a declaration")),
             },
         }
@@ -208,13 +208,14 @@ impl ItemSplitter<'_, '_> {
         Ok(after)
     }
 
-    /// The import whose keyword is at a token, and whose first token is `start`.
+    /// The import whose first token is `start`.
     fn import(
         &mut self,
         start: usize,
-        keyword: usize,
         attributes: Attributes,
+        said: Option<Visibility>,
     ) -> Result<usize, Diagnostic> {
+        let keyword = attributes.end + usize::from(said.is_some());
         if self.chain.within.is_some() {
             self.module.warnings.push(body::import_inside(self.tokens, keyword));
         }
@@ -224,15 +225,16 @@ impl ItemSplitter<'_, '_> {
                 .errors
                 .push(error.at(self.tokens.span(keyword), "imports come first in a file"));
         }
-        let visibility = visibility_at(self.tokens, attributes.end);
-        if visibility == Some(Visibility::Private) {
+        if said == Some(Visibility::Private) {
             return Err(Diagnostic::error(codes::SYNTAX_ERROR, "an `import` that is `private`")
                 .at(self.tokens.span(attributes.end), "an import is for its own module anyway")
                 .note("help: remove `private`"));
         }
-        let off = rules_turned_off(self.tokens, start, attributes.end);
-        let condition = attributes.condition;
-        let statement = ImportStatement { condition, is_public: visibility.is_some(), off };
+        let statement = ImportStatement {
+            condition: attributes.condition,
+            is_public: said.is_some(),
+            off: rules_turned_off(self.tokens, start, attributes.end),
+        };
         read_import(self.module, self.tokens, keyword, statement)
     }
 
@@ -263,9 +265,9 @@ impl ItemSplitter<'_, '_> {
         &mut self,
         start: usize,
         attributes: Attributes,
+        said: Option<Visibility>,
         kind: ItemKind,
     ) -> Result<usize, Diagnostic> {
-        let said = visibility_at(self.tokens, attributes.end);
         if let Some(visibility) = said {
             self.check_visibility(start, attributes, kind, visibility)?;
         }
@@ -407,31 +409,35 @@ struct ImportStatement {
     off: Vec<Name>,
 }
 
-/// The rules that the attributes in `at..end` turn off.
-fn rules_turned_off(tokens: Tokens<'_>, mut at: usize, end: usize) -> Vec<Name> {
-    let mut found = Vec::new();
-    while at < end {
-        let open = tokens.is(at + 2, b'(').then_some(at + 2);
-        if let Some(open) = open.filter(|open| {
-            tokens.is_word(at + 1, Name::DIAGNOSTIC) && tokens.text(open + 1) == "off"
-        }) {
-            found.extend(tokens.word(open + 3));
-        }
-        at = open.map_or(at + 2, |open| tokens.partner(open) + 1);
-    }
-    found
+/// The rules that the attributes in `start..end` turn off.
+fn rules_turned_off(tokens: Tokens<'_>, start: usize, end: usize) -> Vec<Name> {
+    let is_off = |name: &usize| {
+        let open = name + 1;
+        tokens.is_word(*name, Name::DIAGNOSTIC)
+            && tokens.is(open, b'(')
+            && tokens.text(open + 1) == "off"
+    };
+    let rule = |name| tokens.word(name + 4);
+    attribute_names(tokens, start, end).filter(is_off).filter_map(rule).collect()
 }
 
-/// Whether the attributes in `at..end` have one of the name.
-fn has_attribute(tokens: Tokens<'_>, mut at: usize, end: usize, name: &str) -> bool {
-    while at < end {
-        if tokens.text(at + 1) == name {
-            return true;
-        }
-        let open = tokens.is(at + 2, b'(').then_some(at + 2);
-        at = open.map_or(at + 2, |open| tokens.partner(open) + 1);
-    }
-    false
+/// Whether the attributes in `start..end` have one of the name.
+fn has_attribute(tokens: Tokens<'_>, start: usize, end: usize, name: &str) -> bool {
+    attribute_names(tokens, start, end).any(|at| tokens.text(at) == name)
+}
+
+/// Where the names of the attributes in `start..end` are.
+fn attribute_names(
+    tokens: Tokens<'_>,
+    start: usize,
+    end: usize,
+) -> impl Iterator<Item = usize> + '_ {
+    let after = move |name: usize| match tokens.is(name + 1, b'(') {
+        true => tokens.partner(name + 1) + 1,
+        false => name + 1,
+    };
+    std::iter::successors(Some(start + 1), move |name| Some(after(*name) + 1))
+        .take_while(move |name| *name < end)
 }
 
 /// Reads the statement whose `import` is at `at`; returns the index past its semicolon.

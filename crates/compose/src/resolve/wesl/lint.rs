@@ -41,14 +41,14 @@ pub fn import_lints(loader: &Loader<'_>, node: &ModuleNode) -> Vec<Diagnostic> {
     found
 }
 
-/// Warnings about names that a wildcard brings, and that the module has another way; and those about
-/// what a module for wildcards declares.
-pub fn wildcard_lints(
+/// Warnings about names that a wildcard brings, and that the module has another way. As with
+/// [`import_lints`], modules of dependencies have none.
+pub fn shadowed_wildcards(
     loader: &mut Loader<'_>,
     node: u32,
     wildcards: &[WildcardModule],
 ) -> Vec<Diagnostic> {
-    if loader.nodes[node as usize].package != 0 {
+    if loader.nodes[node as usize].package != 0 || is_off(loader, node, "wildcard_shadow") {
         return Vec::new();
     }
     let module = loader.nodes[node as usize].module.shared();
@@ -58,7 +58,7 @@ pub fn wildcard_lints(
     for (name, range) in items.chain(imports).filter(|(name, _)| *name != Name::UNDERSCORE) {
         let brought =
             wildcards.iter().find(|module| !loader.brought(node, module, name).is_empty());
-        if let Some(from) = brought.filter(|_| !is_off(loader, node, "wildcard_shadow")) {
+        if let Some(from) = brought {
             let (text, from) = (loader.names.text(name), &loader.nodes[from.node as usize].label);
             let message = format!("the wildcard of `{from}` brings `{text}` too");
             let place = loader.nodes[node as usize].module.span(range);
@@ -67,19 +67,26 @@ pub fn wildcard_lints(
             );
         }
     }
-    let here = &loader.nodes[node as usize].module;
-    let is_shown = here.is_wildcardable && !is_off(loader, node, "builtin_shadow");
-    for item in module.items.iter().filter(|item| is_shown && item.kind != ItemKind::ConstAssert) {
-        let text = loader.names.text(item.name);
-        if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&text) {
-            let message = format!("`{text}` hides a built-in of WGSL where it is imported by `*`");
-            let place = here.span(item.name_range.clone());
-            found.push(
-                Diagnostic::warning(codes::BUILTIN_SHADOW, message).at(place, "declared here"),
-            );
-        }
-    }
     found
+}
+
+/// Warnings about built-ins of WGSL that a module for wildcards hides from those that import it.
+pub fn hidden_builtins(loader: &Loader<'_>, node: u32) -> Vec<Diagnostic> {
+    let ModuleNode { package, module, .. } = &loader.nodes[node as usize];
+    if *package != 0 || !module.is_wildcardable || is_off(loader, node, "builtin_shadow") {
+        return Vec::new();
+    }
+    let named = module.items.iter().filter(|item| item.kind != ItemKind::ConstAssert);
+    let hiding = named.filter_map(|item| {
+        let text = loader.names.text(item.name);
+        let is_hidden = naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&text);
+        is_hidden.then(|| {
+            let message = format!("`{text}` hides a built-in of WGSL where it is imported by `*`");
+            let place = module.span(item.name_range.clone());
+            Diagnostic::warning(codes::BUILTIN_SHADOW, message).at(place, "declared here")
+        })
+    });
+    hiding.collect()
 }
 
 /// Whether a `diagnostic(off, ...)` of the module names a rule.

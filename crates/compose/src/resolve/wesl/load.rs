@@ -351,7 +351,8 @@ impl<'a> Loader<'a> {
         lint::report_clashes(self, node, &imported);
         lint::report_duplicates(self, node);
         let mut lints = lint::import_lints(self, &self.nodes[node as usize]);
-        lints.extend(lint::wildcard_lints(self, node, &wildcards));
+        lints.extend(lint::shadowed_wildcards(self, node, &wildcards));
+        lints.extend(lint::hidden_builtins(self, node));
         self.nodes[node as usize].lints = lints;
     }
 
@@ -370,6 +371,8 @@ impl<'a> Loader<'a> {
                     self.nodes[node as usize].passed.push((import.alias, candidate.clone()));
                 }
                 targets.push(candidate.target);
+                // An import that nothing uses is no error if it leads nowhere. That there are too many
+                // modules is one, whoever asks for the one too many.
                 if let PathTarget::Failed(failure) = candidate.target
                     && (import.is_public
                         || self.failures[failure as usize].code == codes::TOO_MANY_FILES

@@ -152,18 +152,18 @@ impl Loader<'_> {
             self.nodes.get(*other as usize).is_some_and(|node| node.shows_name(*name, here))
         };
         let has = |(other, name): &(u32, Name)| {
+            self.nodes.get(*other as usize).is_some_and(|node| node.sets.contains_key(name))
+        };
+        // What a module passes on is never kept, but a module may have begun to pass on something.
+        let passes = |(other, name): &(u32, Name)| {
             self.nodes.get(*other as usize).is_some_and(|node| {
-                let passes = |index: &usize| node.module.imports[*index].is_public;
-                node.sets.contains_key(name)
-                    || node.aliases.get(name).into_iter().flatten().any(passes)
+                let mut imports = node.aliases.get(name).into_iter().flatten();
+                imports.any(|index| node.module.imports[*index].is_public)
             })
         };
-        let is_passed = |(other, name): &(u32, Name)| {
-            !self.nodes.get(*other as usize).is_some_and(|node| node.sets.contains_key(name))
-        };
         if !known.items.iter().all(shows)
-            || known.items.iter().any(is_passed)
             || known.lacks.iter().any(has)
+            || known.items.iter().chain(&known.lacks).any(passes)
         {
             return false;
         }

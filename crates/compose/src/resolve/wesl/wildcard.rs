@@ -68,13 +68,12 @@ impl Loader<'_> {
     fn narrower(&self, node: u32, there: u32, name: Name, place: Span) -> Option<Diagnostic> {
         let [here, other] = [node, there].map(|node| &self.nodes[node as usize]);
         // A package that is older than the word shows everything to others.
-        let is_older = here.package != other.package && !other.module.says_visibility;
+        if here.package != other.package && !other.module.says_visibility {
+            return None;
+        }
         let items = other.sets.get(&name)?.iter();
         let mut items = items.map(|index| &other.module.items[*index as usize]);
         let item = items.find(|item| item.visibility != Visibility::Public)?;
-        if is_older {
-            return None;
-        }
         let text = self.names.text(name);
         let message = format!("`{text}` is passed on, and is not public itself");
         Some(
