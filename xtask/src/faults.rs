@@ -4,10 +4,12 @@
 //!
 //! A small bundle is generated over an older one, once for each occurrence of each call. `strace`
 //! makes that occurrence fail or end the run. Whatever happens, the folder must hold a complete
-//! bundle afterwards, the older or the newer one. Panics are findings too.
+//! bundle afterwards, the older or the newer one. Panics are findings too. Runs are also killed one
+//! after another in the same folder.
 
 mod bundles;
 mod clocks;
+mod pairs;
 mod stores;
 
 use std::collections::BTreeMap;
@@ -79,6 +81,9 @@ pub fn run(arguments: &[String]) -> CommandResult {
             }
         }
     }
+    if wanted("pairs") {
+        findings.extend(pairs::run(&package, &mut counts)?);
+    }
     if wanted("stores") {
         findings.extend(stores::run(&package, seed, &mut counts)?);
     }
@@ -99,11 +104,11 @@ pub fn run(arguments: &[String]) -> CommandResult {
 }
 
 /// The kinds of faults, each of which can be tried alone.
-const KINDS: [&str; 4] = ["calls", "stores", "bundles", "clocks"];
+const KINDS: [&str; 5] = ["calls", "pairs", "stores", "bundles", "clocks"];
 
 /// The seed, and the kind of faults if only one is tried.
 fn parsed(arguments: &[String]) -> Result<(u64, Option<&str>), CommandFailure> {
-    const USAGE: &str = "usage: cargo xtask faults [--seed N] [calls|stores|bundles|clocks]";
+    const USAGE: &str = "usage: cargo xtask faults [--seed N] [calls|pairs|stores|bundles|clocks]";
     let wrong = || CommandFailure::usage(USAGE);
     let (seed, rest) = match arguments {
         [name, seed, rest @ ..] if name == "--seed" => (seed.parse().map_err(|_| wrong())?, rest),

@@ -64,12 +64,10 @@ pub fn not_run(name: &str, error: &std::io::Error) -> CommandFailure {
     CommandFailure::environment(format!("{name} could not be run: {error}"))
 }
 
-/// The command `lamplight` that was built together with this program, in the same profile.
+/// The command `lamplight`, built now in the profile of this program.
 pub fn beside_this() -> Result<PathBuf, CommandFailure> {
+    let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+    cargo(&["build", "--quiet", "--package", "lamplight", "--profile", profile], &[])?;
     let program = std::env::current_exe().map_err(|error| not_run("lamplight", &error))?;
-    let program = program.with_file_name("lamplight");
-    match program.is_file() {
-        true => Ok(program),
-        false => Err(CommandFailure::environment("build it first: cargo build")),
-    }
+    Ok(program.with_file_name("lamplight"))
 }

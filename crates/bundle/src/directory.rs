@@ -206,11 +206,7 @@ impl Directory {
 
     /// Refuses the index of another bundle that is not whole.
     fn verify_other_index(&self, index: Vec<u8>) -> Result<(), Error> {
-        let index = file::from_bytes(index)?;
-        index.verify_index()?;
-        for (blob, extension) in index.outputs()? {
-            let name = blob_file_name(&blob, &extension)
-                .ok_or_else(|| Error::corrupt(INDEX, format!("`{blob}` does not name a blob")))?;
+        for (blob, name) in blobs_of_index(index)? {
             let part = format!("{BLOBS}/{name}");
             let bytes = input::read_file(&self.blobs.join(&name), MOST_GROUP_BYTES as u64)
                 .map_err(|error| Error::Io(format!("{part}: {error}")))?;
@@ -220,6 +216,23 @@ impl Directory {
         }
         Ok(())
     }
+}
+
+/// The checksums of the blobs that an index names, each with the name of its file.
+fn blobs_of_index(index: Vec<u8>) -> Result<Vec<(String, String)>, Error> {
+    let index = file::from_bytes(index)?;
+    index.verify_index()?;
+    let named = index.outputs()?.into_iter().map(|(blob, extension)| {
+        let name = blob_file_name(&blob, &extension)
+            .ok_or_else(|| Error::corrupt(INDEX, format!("`{blob}` does not name a blob")))?;
+        Ok((blob, name))
+    });
+    named.collect()
+}
+
+/// The files of the blobs that an index names.
+pub(super) fn blob_files_of_index(index: Vec<u8>) -> Result<BTreeSet<String>, Error> {
+    Ok(blobs_of_index(index)?.into_iter().map(|(_, name)| name).collect())
 }
 
 /// How many blobs a thread reads at least.

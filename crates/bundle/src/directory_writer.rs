@@ -4,11 +4,12 @@
 //! synced, they are renamed into `blobs/`. Then one rename puts the index into its place,
 //! and another one the manifest. So whenever the run is killed, the directory holds either the old
 //! bundle or the new one, complete; between the two renames, the index already names the new one,
-//! all of whose blobs are there.
+//! all of whose blobs are there. If the run is killed there, the blobs of both stay until a later run
+//! has put an index and a manifest of its own into their places.
 //!
 //! A program that has the older bundle open can go on reading it: its blobs are listed in
-//! [`RETIRED`] and stay until the next run. Only blobs that a manifest of ours names are ever
-//! removed.
+//! [`RETIRED`] and stay until the next run. Only blobs that a manifest or an index of ours names are
+//! ever removed.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -17,7 +18,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::directory::{
-    BLOBS, BlobFile, INDEX, MANIFEST, MOST_MANIFEST_BYTES, blob_files_of_manifest, read_manifest,
+    BLOBS, BlobFile, INDEX, MANIFEST, MOST_MANIFEST_BYTES, blob_files_of_index,
+    blob_files_of_manifest, read_manifest,
 };
 use super::layout::MAGIC;
 use super::manifest::{self, Before, Manifest, ManifestArtifact};
@@ -44,9 +46,9 @@ pub fn write_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<()
 pub struct DirectoryWriter {
     path: PathBuf,
     replace: Replace,
-    /// Files of blobs that the present bundle names.
+    /// Files of blobs that the present manifest or the present index names.
     live: BTreeSet<String>,
-    /// Files of blobs that only the bundle before it named.
+    /// Files of blobs that only the bundle before them named.
     retired: BTreeSet<String>,
     scratch: Scratch,
     digester: Digester,
@@ -79,8 +81,8 @@ impl DirectoryWriter {
         let turn = output::wait_for_turn(path, turns)?;
         let before = survey_manifest(path, replace)?;
         let is_ours = before.is_some();
-        survey_index(path, replace)?;
-        let live = before.unwrap_or_default();
+        let mut live = before.unwrap_or_default();
+        live.extend(survey_index(path, replace)?);
         let retired = read_retired(path, replace)?;
         let blobs = path.join(BLOBS);
         let has_blobs = is_folder(&blobs)?;
@@ -300,16 +302,21 @@ fn survey_manifest(path: &Path, replace: Replace) -> Result<Option<BTreeSet<Stri
     }
 }
 
-/// Refuses an index that is a link or no file, and one of somebody else.
-fn survey_index(path: &Path, replace: Replace) -> Result<(), Error> {
+/// The blobs of the index that is there. It is the index of another bundle than the manifest's where
+/// a run was killed between the two. An index that is damaged counts as one without blobs.
+///
+/// # Errors
+/// [`Error::Foreign`] for an index that is a link or no file, and for one of somebody else.
+fn survey_index(path: &Path, replace: Replace) -> Result<BTreeSet<String>, Error> {
     let place = path.join(INDEX);
     match read_own(&place)? {
+        None => Ok(BTreeSet::new()),
         Some(bytes)
             if replace == Replace::Ours && !bytes.is_empty() && !bytes.starts_with(MAGIC) =>
         {
             Err(Error::Foreign(foreign_file(&place)))
         }
-        _ => Ok(()),
+        Some(bytes) => Ok(blob_files_of_index(bytes).unwrap_or_default()),
     }
 }
 
@@ -378,7 +385,7 @@ fn survey_foreign_files(path: &Path, scratch: &Scratch, has_blobs: bool) -> Resu
     Err(Error::Foreign(Foreign::file(path, found)))
 }
 
-/// Removes blobs that a killed run moved and that no manifest names. `left` is the scratch folder
+/// Removes blobs that a killed run moved and that neither the manifest nor the index names. `left` is the scratch folder
 /// that this run left.
 fn remove_unfinished(left: &Path, blobs: &Path, known: [&BTreeSet<String>; 2]) {
     let Ok(Some(text)) = read_own(&left.join(MANIFEST)) else { return };

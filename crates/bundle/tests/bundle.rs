@@ -5,6 +5,7 @@ mod digests;
 mod in_place;
 mod large;
 mod schema;
+mod stopped;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -24,7 +25,7 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 16] = [
+    let cases: [Case; 17] = [
         ("recorded_keys_are_listed", recording),
         ("both_forms_give_back_what_was_written", round_trips),
         ("keys_come_in_any_order_with_defaults", keys_in_any_order),
@@ -40,6 +41,7 @@ pub fn tests() -> Vec<Trial> {
         ("manifests_follow_their_schema", schema),
         ("rewriting_in_place_ends_no_reader", in_place::rewritten),
         ("a_replaced_file_stays_readable", in_place::replaced),
+        ("a_run_killed_between_its_renames_loses_no_blob", stopped::between_the_renames),
         ("remembered_hashes_are_those_of_the_unit", remembered),
     ];
     let mut tests: Vec<Trial> = cases
