@@ -204,7 +204,7 @@ fn preset_mistakes_are_reported() -> Result<(), Failed> {
             "invalid-permutation",
         ),
         (
-            "program = \"forward\"\nkey = \"saturate,max_lights=1\"\nscene = \"floor\"",
+            "program = \"forward\"\nkey = \"two_sided,max_lights=1\"\nscene = \"floor\"",
             "data-syntax",
         ),
         ("program = \"forward\"\nkey = \"default\"\nscene = \"flor\"", "data-syntax"),

@@ -35,7 +35,7 @@ const REVIEWED: &[(&str, &str)] = &[
     ("vsm_fog", "base_map,fog=exp2,lights=spot,shadow=vsm,specular=ggx"),
     (
         "vertex_window",
-        "ambient_attenuated,attenuation=inverse_square_window,cone=hard,frequency=vertex,lights=spot,viewer=infinite",
+        "ambient_attenuated,attenuation=inverse_square_window,cone=hard,frequency=vertex,lights=spot",
     ),
     (
         "gltf_glass",

@@ -10,9 +10,6 @@
 #if LIGHTS != LIGHTS_NONE
 #include "../lighting/classic.glsl"
 #endif
-#if SATURATE
-#include "../math/safe.glsl"
-#endif
 #if LIGHTS != LIGHTS_NONE && AREA == AREA_RECTANGLE && SPECULAR == SPECULAR_GGX
 #include "areas.glsl"
 #endif
@@ -126,9 +123,5 @@ void main() {
 #else
     vec3 color = shade(base.rgb, normal, uint(clamp(255.0 * packed_normal.z + 0.5, 0.0, 4294967040.0)));
 #endif
-#if SATURATE
-    out_color = vec4(saturate_color(color), base.a);
-#else
     out_color = vec4(color, base.a);
-#endif
 }

@@ -388,9 +388,6 @@ void main() {
 #if CURVE != CURVE_NONE
     color = toned(color);
 #endif
-#if SATURATE
-    color = saturate_color(color);
-#endif
 #if ALPHA_TEST
     if (base.a < 0.5) {
         discard;

@@ -26,7 +26,7 @@
 #if LIGHTS != LIGHTS_NONE || SPECULAR == SPECULAR_GGX
 #include "../brdf/specular.glsl"
 #endif
-#if ATTENUATION != ATTENUATION_POLYNOMIAL
+#if ATTENUATION == ATTENUATION_INVERSE_SQUARE_WINDOW || ATTENUATION == ATTENUATION_RANGE_GLTF
 #include "../lighting/attenuation.glsl"
 #endif
 #if LIGHTS != LIGHTS_NONE
@@ -299,8 +299,6 @@ float falloff(Light light, LightSample arriving) {
 #endif
 #if ATTENUATION == ATTENUATION_NONE
     return 1.0;
-#elif ATTENUATION == ATTENUATION_LINEAR_RADIUS
-    return linear_radius(arriving.distance, light.range);
 #elif ATTENUATION == ATTENUATION_INVERSE_SQUARE_WINDOW
     float d2 = arriving.distance * arriving.distance;
     float inv_range2 = 0.0;
@@ -887,11 +885,7 @@ Around light_around(Surface surface, vec3 scattered) {
 #if SPECULAR != SPECULAR_NONE || DIFFUSE == DIFFUSE_OREN_NAYAR || AMBIENT == AMBIENT_IBL
 /// Unit direction from a point to the viewer.
 vec3 towards_viewer(vec3 position) {
-#if VIEWER == VIEWER_LOCAL
     return view_local(position - camera.world_from_view[3].xyz);
-#else
-    return (camera.world_from_view * vec4(view_infinite(), 0.0)).xyz;
-#endif
 }
 #endif
 

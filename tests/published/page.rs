@@ -51,21 +51,6 @@ moves corners to sixteenths of a pixel: pixels whose middle is then on an edge a
 
 ";
 
-const KEPT: &str = "
-## What `forward` keeps of them
-
-`published` draws the listings, and `forward` has the safe forms. These values of its axes, and of those
-of `deferred` and `depth_view`, are of use for the sources' scenes alone. They stay, since a key that an
-engine has stored keeps its meaning, and their ordinals in `lamplight.lock` are never given away.
-
-| axis and value | came from | other scenes take |
-|---|---|---|
-| `viewer=infinite` | examples 7.3 to 7.11: `EyeDirection` | `viewer=local` |
-| `saturate` | example 7.2 and those after it: the minimum with white | `curve`, or the program `tonemap` |
-| `attenuation=linear_radius` | Newcastle 11 | `attenuation=inverse_square_window` |
-| `curve=igl` of `depth_view` | Igalia II | `curve=linear` |
-";
-
 /// By day, the pictures of every so many rows are drawn.
 const STEP: usize = 12;
 /// Differences that can be seen, of white.
@@ -81,12 +66,12 @@ fn on_page() -> Result<(), String> {
         library().presets.iter().filter(|preset| is_published(preset)).collect();
     if std::env::var_os("UPDATE_EXPECT").is_some() {
         let rows = presets.iter().map(|preset| row_of(preset)).collect::<Result<String, _>>()?;
-        let text = format!("{HEAD}{rows}{EXECUTORS}{}{KEPT}", table()?);
+        let text = format!("{HEAD}{rows}{EXECUTORS}{}", table()?);
         return std::fs::write(&file, text).map_err(|error| error.to_string());
     }
     let page = std::fs::read_to_string(&file).map_err(|error| error.to_string())?;
     let rows = page.strip_prefix(HEAD).ok_or("the head of docs/published.md is another one")?;
-    let rest = format!("{EXECUTORS}{}{KEPT}", table()?);
+    let rest = format!("{EXECUTORS}{}", table()?);
     let rows = rows.strip_suffix(&rest).ok_or(
         "docs/published.md has another table of executors than tests/published/compared: \
          cargo xtask record published::page writes it",

@@ -73,6 +73,10 @@ pub struct Preset {
     /// draws it as it is printed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub safe: Option<String>,
+    /// Numbers of lamps that the safe form has instead of those of `numbers`: where lamps fade in
+    /// another way, as much light has to leave them that the same arrives.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub safe_light: BTreeMap<String, PresetNumber>,
 }
 
 /// The program that draws examples in the form that is safe to use.
@@ -95,11 +99,17 @@ impl Preset {
         known.map_or_else(|| self.source.split(", ").next().unwrap_or_default(), |(_, work)| work)
     }
 
-    /// The example in the form that is safe to use, with the same scene and numbers.
+    /// The example in the form that is safe to use, with the same scene, and the same numbers but for
+    /// those of [`Self::safe_light`].
     #[must_use]
     pub fn safe_form(&self) -> Option<Self> {
         let key = self.safe.clone()?;
-        Some(Self { program: SAFE.to_owned(), key, safe: None, ..self.clone() })
+        let mut safe = Self { program: SAFE.to_owned(), key, safe: None, ..self.clone() };
+        let lamps = std::mem::take(&mut safe.safe_light);
+        if !lamps.is_empty() {
+            safe.numbers.entry("light".to_owned()).or_default().extend(lamps);
+        }
+        Some(safe)
     }
 }
 
@@ -186,6 +196,8 @@ struct PresetEntry {
     open: Vec<Spanned<String>>,
     deviations: Vec<String>,
     safe: Option<Spanned<String>>,
+    #[serde(default)]
+    safe_light: NumberGroup,
 }
 
 #[derive(Deserialize)]
@@ -239,16 +251,7 @@ struct Checker<'s> {
 
 impl Checker<'_> {
     fn preset(&mut self, name: String, entry: PresetEntry) -> Preset {
-        self.known("scene", &entry.scene, sets::ALL.iter().map(|set| set.name));
-        if let Some(probe) = &entry.probe {
-            self.known("light probe", probe, self.probes.iter().map(|probe| probe.name.as_str()));
-        }
-        self.permutation(&entry.program, &entry.key);
-        for pass in &entry.passes {
-            self.permutation(&pass.program, &pass.key);
-        }
-        let safe = |key: &Spanned<String>| Spanned::new(key.span(), SAFE.to_owned());
-        entry.safe.iter().for_each(|key| self.permutation(&safe(key), key));
+        self.references(&entry);
         let groups = [
             ("object", entry.object),
             ("light", entry.light),
@@ -286,7 +289,22 @@ impl Checker<'_> {
             open: entry.open.into_iter().map(Spanned::into_inner).collect(),
             deviations: entry.deviations,
             safe: entry.safe.map(Spanned::into_inner),
+            safe_light: entry.safe_light,
         }
+    }
+
+    /// The scene, the probe and the permutations that a preset names must be there.
+    fn references(&mut self, entry: &PresetEntry) {
+        self.known("scene", &entry.scene, sets::ALL.iter().map(|set| set.name));
+        if let Some(probe) = &entry.probe {
+            self.known("light probe", probe, self.probes.iter().map(|probe| probe.name.as_str()));
+        }
+        self.permutation(&entry.program, &entry.key);
+        for pass in &entry.passes {
+            self.permutation(&pass.program, &pass.key);
+        }
+        let safe = |key: &Spanned<String>| Spanned::new(key.span(), SAFE.to_owned());
+        entry.safe.iter().for_each(|key| self.permutation(&safe(key), key));
     }
 
     /// A number that is open must not be given, and must be in one of the groups.

@@ -19,6 +19,8 @@ pub fn show_preset(preset: &Preset) -> ShownItem {
             .iter()
             .map(|key| vec!["safe form".to_owned(), format!("{SAFE} {}", key.replace(',', ", "))]),
     );
+    let of_safe = preset.safe_light.iter();
+    facts.extend(of_safe.map(|(name, value)| vec![String::new(), format!("light.{name} {value}")]));
     facts.push(vec!["scene".to_owned(), preset.scene.clone()]);
     facts.extend(preset.probe.iter().map(|probe| vec!["light probe".to_owned(), probe.clone()]));
     let about = format!("{} {}", preset.doc, preset.look);
@@ -57,6 +59,7 @@ pub fn preset_json(preset: &Preset) -> Value {
         "program": preset.program,
         "key": preset.key,
         "safe": preset.safe,
+        "safe_light": preset.safe_light,
         "scene": preset.scene,
         "probe": preset.probe,
         "passes": preset.passes,
