@@ -1,11 +1,15 @@
-//! Suggests what an unknown name may mean: an item of the library, or a similar name.
+//! Suggests what an unknown name may mean: an item of the library, a name of another language, or a
+//! similar name.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use lamplight_bundle::Language;
 use lamplight_compose::{Composed, PartKind};
 use lamplight_diagnostic::{Diagnostic, nearest_name};
 use lamplight_syntax::words::leading_word;
+
+use super::foreign::native_text;
 
 /// Functions and types of both languages that are often misspelt.
 const SHARED: &[&str] = &[
@@ -110,8 +114,14 @@ pub fn glsl_words() -> impl Iterator<Item = &'static str> {
     SHARED.iter().chain(GLSL).copied()
 }
 
-/// Adds the import that is missing, or the nearest name.
-pub fn hint_unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic {
+/// Adds the import that is missing, what another language's name is called here, or the nearest name.
+/// `place` is where the name is in the composed text.
+pub fn hint_unknown(
+    error: Diagnostic,
+    composed: &Composed,
+    name: &str,
+    place: Option<Range<usize>>,
+) -> Diagnostic {
     let names = library_names(composed);
     if let Some(modules) = names.get(name) {
         return modules.iter().fold(error, |error, module| {
@@ -121,13 +131,17 @@ pub fn hint_unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagn
             ))
         });
     }
-    let own = match composed.language {
-        Language::Wesl => WGSL,
-        Language::Glsl => GLSL,
+    let (own, spoken) = match composed.language {
+        Language::Wesl => (WGSL, "WGSL"),
+        Language::Glsl => (GLSL, "GLSL"),
     };
+    if let Some(native) = native_text(composed.language, name) {
+        return error.note(format!("help: in {spoken}, write {}", in_backticks(&native)));
+    }
+    let locals = place.map_or_else(BTreeSet::new, |place| local_names(composed, &place));
     let declared = composed.parts.iter().flat_map(|part| part.names.iter().map(String::as_str));
     let here: Vec<&str> =
-        declared.chain(SHARED.iter().copied()).chain(own.iter().copied()).collect();
+        declared.chain(locals).chain(SHARED.iter().copied()).chain(own.iter().copied()).collect();
     let of_library = names.keys().map(String::as_str);
     // All names are searched together, so that the nearest one is suggested wherever it comes from.
     match nearest_name(name, here.iter().copied().chain(of_library)) {
@@ -136,6 +150,75 @@ pub fn hint_unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagn
             let import = missing_import(composed, module, near);
             error.note(format!("help: did you mean the library's `{near}`? `{import}`"))
         }),
+        None => error,
+    }
+}
+
+/// Code in backticks, and words that have some of their own as they are.
+fn in_backticks(text: &str) -> String {
+    if text.contains('`') || text.contains(" and ") || text.contains(", with") {
+        text.to_owned()
+    } else {
+        format!("`{text}`")
+    }
+}
+
+/// Parameters and local variables that are declared before a place in the function around it.
+fn local_names<'c>(composed: &'c Composed, place: &Range<usize>) -> BTreeSet<&'c str> {
+    let around = composed.parts.iter().find(|part| part.range.contains(&place.start));
+    let text = around.and_then(|part| composed.text.get(part.range.start..place.start));
+    declared_locals(composed.language, text.unwrap_or_default())
+}
+
+/// Words that may come before a name in GLSL without declaring it.
+const NOT_TYPES: &[&str] = &["return", "else", "case", "do", "in", "out", "inout", "const"];
+
+/// In WGSL, names after `let`, `var` and `const`, and those before a colon. In GLSL, names after
+/// another word, which is their type.
+fn declared_locals(language: Language, text: &str) -> BTreeSet<&str> {
+    let mut found = BTreeSet::new();
+    let mut before = "";
+    for line in text.lines().map(|line| line.split("//").next().unwrap_or_default()) {
+        let mut rest = line;
+        while let Some(start) = rest.find(|c: char| c.is_alphabetic() || c == '_') {
+            if !rest[..start].trim().is_empty() {
+                before = "";
+            }
+            let word = leading_word(&rest[start..]);
+            rest = &rest[start + word.len()..];
+            let is_declared = match language {
+                Language::Wesl => {
+                    matches!(before, "let" | "var" | "const")
+                        || rest.trim_start().starts_with(':')
+                            && !rest.trim_start().starts_with("::")
+                }
+                Language::Glsl => !before.is_empty() && !NOT_TYPES.contains(&before),
+            };
+            if is_declared {
+                found.insert(word);
+            }
+            before = word;
+        }
+        if !rest.trim().is_empty() {
+            before = "";
+        }
+    }
+    found
+}
+
+/// Adds the nearest member of all structures, for a member that there is not.
+pub fn hint_member(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic {
+    let structures = composed.parts.iter().filter(|part| part.kind == PartKind::Struct);
+    let members = structures.flat_map(|part| {
+        let text = composed.text.get(part.range.clone()).unwrap_or_default();
+        let body = text.split_once('{').map_or("", |(_, body)| body);
+        match composed.language {
+            Language::Wesl => declared_locals(Language::Wesl, body),
+            Language::Glsl => declared_locals(Language::Glsl, body),
+        }
+    });
+    match nearest_name(name, members) {
+        Some(near) => error.note(format!("help: did you mean `{near}`?")),
         None => error,
     }
 }
@@ -169,6 +252,26 @@ fn declared_name(line: &str) -> Option<&str> {
     Some(leading_word(rest))
 }
 
+/// The name before the parenthesis that is open at the end of a text.
+pub fn enclosing_call(before: &str) -> Option<&str> {
+    let mut depth = 0;
+    for (at, letter) in before.char_indices().rev() {
+        match letter {
+            ')' => depth += 1,
+            '(' if depth > 0 => depth -= 1,
+            '(' => {
+                let text = before[..at].trim_end();
+                let is_word = |c: char| c == '_' || c.is_alphanumeric();
+                let start = text.rfind(|c| !is_word(c)).map_or(0, |at| at + 1);
+                return (start < text.len()).then(|| &text[start..]);
+            }
+            ';' | '{' | '}' => return None,
+            _ => {}
+        }
+    }
+    None
+}
+
 /// Adds a note with each declaration of a function, for a call whose arguments fit none of them.
 pub fn note_signatures(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic {
     let declares = |part: &&lamplight_compose::Part| {
@@ -184,4 +287,24 @@ pub fn note_signatures(error: Diagnostic, composed: &Composed, name: &str) -> Di
         let head = head.split_whitespace().collect::<Vec<_>>().join(" ");
         error.note(format!("declared: `{head}`"))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn locals_of_wgsl() {
+        let text = "fn f(normal: vec3f, @location(0) uv: vec2f) {\n  let n = normalize(normal); // let x\n\
+                    var<private> a = n; var light: f32 = package::b;";
+        let found: Vec<_> = declared_locals(Language::Wesl, text).into_iter().collect();
+        assert_eq!(found, ["light", "n", "normal", "uv"]);
+    }
+
+    #[test]
+    fn locals_of_glsl() {
+        let text = "vec4 f(vec3 normal) {\n  float light = 1.0; if (light > 0.5) return normal;";
+        let found: Vec<_> = declared_locals(Language::Glsl, text).into_iter().collect();
+        assert_eq!(found, ["f", "light", "normal"]);
+    }
 }

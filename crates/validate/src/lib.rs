@@ -8,6 +8,7 @@ mod alias;
 mod browsers;
 mod constants;
 mod every;
+mod foreign;
 mod gathers;
 mod glsl;
 mod guard;

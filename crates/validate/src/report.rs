@@ -7,6 +7,7 @@ use naga::front::glsl::ErrorKind;
 use naga::front::{glsl, wgsl};
 use naga::valid::ValidationError;
 
+use super::foreign::native_text;
 use super::locate::place_of_error;
 use super::{hints, parse_wgsl, uses, words};
 use lamplight_bundle::Language;
@@ -33,12 +34,78 @@ pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
             diagnostic = label_or_note(diagnostic, composed, Some(range), "in this part");
         }
     }
-    diagnostic =
-        error.notes().fold(diagnostic, |diagnostic, note| diagnostic.note(as_sentence(note)));
-    match unknown_name(&message) {
-        Some(name) => hints::hint_unknown(diagnostic, composed, name),
-        None => diagnostic,
+    diagnostic = error.notes().fold(diagnostic, |diagnostic, note| {
+        diagnostic
+            .note(as_sentence(&about_parameter(composed, error, note).unwrap_or(note.to_owned())))
+    });
+    let place = error.labels().next().and_then(|(span, _)| span.to_range());
+    if let Some(name) = quoted_after(UNKNOWN, &message) {
+        hints::hint_unknown(diagnostic, composed, name, place)
+    } else if let Some(name) = quoted_after(NO_MEMBER, &message) {
+        hints::hint_member(diagnostic, composed, name)
+    } else {
+        advised(diagnostic, composed, &message, place)
     }
+}
+
+/// What a matrix is made of, for one that was made of something else.
+fn matrix_advice(message: &str) -> Option<String> {
+    let ty = message.strip_prefix("type `")?.strip_suffix("` is not constructible")?;
+    let [columns @ b'2'..=b'4', b'x', rows @ b'2'..=b'4', ..] = ty.strip_prefix("mat")?.as_bytes()
+    else {
+        return None;
+    };
+    let (columns, rows) = (columns - b'0', rows - b'0');
+    Some(format!("help: `{ty}` takes {columns} columns, or {} numbers", columns * rows))
+}
+
+/// What to do about a parameter that is assigned to, where naga's note takes it for a `let`.
+fn about_parameter(composed: &Composed, error: &wgsl::ParseError, note: &str) -> Option<String> {
+    let name = note.strip_prefix("consider declaring `")?.split('`').next()?;
+    let is_parameter = error.labels().any(|(span, _)| {
+        let range = span.to_range().unwrap_or_default();
+        let before = composed.text.get(..range.start).unwrap_or_default().trim_end();
+        composed.text.get(range) == Some(name) && before.ends_with(['(', ',', ')'])
+    });
+    is_parameter
+        .then(|| format!("help: a parameter cannot change; copy it: `var changed = {name};`"))
+}
+
+/// How naga's sentence begins about a member that there is not.
+const NO_MEMBER: &[&str] = &["invalid field accessor `"];
+
+/// Adds advice to naga's sentences that say what is wrong and not what is right.
+fn advised(
+    diagnostic: Diagnostic,
+    composed: &Composed,
+    message: &str,
+    place: Option<Range<usize>>,
+) -> Diagnostic {
+    let Some(place) = place else { return diagnostic };
+    let before = composed.text.get(..place.start).unwrap_or_default().trim_end();
+    if message.starts_with("expected assignment or increment/decrement") {
+        let start = before.rfind(|c: char| c != '_' && !c.is_alphanumeric()).map_or(0, |at| at + 1);
+        let (ty, name) = (&before[start..], composed.text.get(place).unwrap_or_default());
+        let is_type = ty.chars().next().is_some_and(char::is_alphabetic);
+        return match is_type && name.chars().next().is_some_and(char::is_alphabetic) {
+            true => diagnostic.note(format!(
+                "help: WGSL declares with a keyword: `let {name} = ...;`, or `var {name}: {} = ...;` \
+                 if it changes",
+                native_text(Language::Wesl, ty).unwrap_or_else(|| ty.to_owned())
+            )),
+            false => diagnostic,
+        };
+    }
+    if let Some(advice) = matrix_advice(message) {
+        return diagnostic.note(advice);
+    }
+    if message.starts_with("automatic conversions cannot convert") {
+        return match hints::enclosing_call(before) {
+            Some(name) => hints::note_signatures(diagnostic, composed, name),
+            None => diagnostic,
+        };
+    }
+    diagnostic
 }
 
 /// How naga's sentence begins before the types of operands.
@@ -48,8 +115,9 @@ const OPERANDS: &str = "Incompatible operands";
 const UNKNOWN: &[&str] =
     &["no definition in scope for identifier: `", "unknown type: `", "unknown identifier: `"];
 
-fn unknown_name(message: &str) -> Option<&str> {
-    let rest = UNKNOWN.iter().find_map(|start| message.strip_prefix(start))?;
+/// What stands in backticks at the end of a sentence that begins in one of these ways.
+fn quoted_after<'m>(starts: &[&str], message: &'m str) -> Option<&'m str> {
+    let rest = starts.iter().find_map(|start| message.strip_prefix(start))?;
     rest.strip_suffix('`')
 }
 
@@ -68,9 +136,10 @@ pub fn glsl_errors(composed: &Composed, errors: &glsl::ParseErrors) -> Diagnosti
                 ErrorKind::UnknownVariable(name) | ErrorKind::UnknownType(name) => {
                     let error = Diagnostic::error(codes::GLSL_ERROR, message);
                     hints::hint_unknown(
-                        label_or_note(error, composed, range, "here"),
+                        label_or_note(error, composed, range.clone(), "here"),
                         composed,
                         name,
+                        range,
                     )
                 }
                 ErrorKind::SemanticError(text) => called_function(composed, text, message, range),
@@ -114,7 +183,8 @@ fn called_function(
         );
     }
     let error = Diagnostic::error(codes::GLSL_ERROR, format!("there is no function `{name}`"));
-    hints::hint_unknown(label_or_note(error, composed, range, "here"), composed, name)
+    let error = label_or_note(error, composed, range.clone(), "here");
+    hints::hint_unknown(error, composed, name, range)
 }
 
 /// An error of the validator as a diagnostic, with its spans as labels.
@@ -136,6 +206,20 @@ pub fn validation_error(
     });
     let sentence = words::validation_words(module, error.as_inner());
     let diagnostic = Diagnostic::error(sentence.code.unwrap_or(fallback), sentence.message);
+    // A value within the statement is the better place.
+    let is_within = |statement: &Range<usize>| {
+        spans.iter().any(|(range, words)| {
+            *words == VALUE
+                && range.as_ref().is_some_and(|range| {
+                    statement.start <= range.start && range.end <= statement.end
+                })
+        })
+    };
+    let statement = sentence.statement.and_then(|span| span.to_range());
+    let statement = statement.filter(|statement| !is_within(statement));
+    let diagnostic = statement.into_iter().fold(diagnostic, |diagnostic, range| {
+        label_or_note(diagnostic, composed, Some(range), "this statement")
+    });
     let diagnostic = spans.into_iter().fold(diagnostic, |diagnostic, (range, words)| {
         label_or_note(diagnostic, composed, range, words)
     });
@@ -262,6 +346,9 @@ fn label_or_note(
     diagnostic.note(format!("{label}: in text the composer wrote, `{quoted}`"))
 }
 
+/// The label for a value.
+const VALUE: &str = "this expression";
+
 /// The label for a type.
 const TYPE: &str = "this type";
 
@@ -270,7 +357,7 @@ fn span_kind(context: &str) -> &'static str {
     const KINDS: [(&str, &str); 8] = [
         ("::GlobalVariable", "this variable"),
         ("::LocalVariable", "this variable"),
-        ("::Expression", "this expression"),
+        ("::Expression", VALUE),
         ("::Function", "this function"),
         ("::Constant", "this constant"),
         ("::Override", "this override"),
@@ -283,7 +370,9 @@ fn span_kind(context: &str) -> &'static str {
 /// naga's message in our style: it starts in lower case, unless with a name, and quotes the
 /// shader's text in backticks.
 fn as_sentence(message: &str) -> String {
-    let message = message.trim().replace(['"', '\''], "`");
+    let message = message.trim().replace(['"', '\''], "`").replace("{Abstract", "Abstract");
+    let message =
+        message.replace("AbstractFloat}", "AbstractFloat").replace("AbstractInt}", "AbstractInt");
     // An apostrophe is not a quote.
     let message =
         APOSTROPHES.iter().fold(message, |message, (wrong, right)| message.replace(wrong, right));

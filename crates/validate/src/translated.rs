@@ -1,5 +1,7 @@
 //! GLSL as WGSL: our own translator reads what naga's front end does not.
 
+use std::ops::Range;
+
 use lamplight_bundle::{Language, SourceClip, Stage};
 use lamplight_compose::{Composed, Segment, SourceMap};
 use lamplight_diagnostic::source::SourceId;
@@ -118,6 +120,10 @@ pub fn of_translation(error: Diagnostic) -> Diagnostic {
 
 /// Places in the composed text as places in the author's.
 fn in_authors_text(mut problems: Diagnostics, composed: &Composed) -> Diagnostics {
+    let places: Vec<_> = problems
+        .iter()
+        .map(|problem| problem.labels.first().map(|label| label.span.range()))
+        .collect();
     for problem in &mut problems {
         let labels = std::mem::take(&mut problem.labels);
         let moved = labels.into_iter().filter_map(|label| {
@@ -126,17 +132,28 @@ fn in_authors_text(mut problems: Diagnostics, composed: &Composed) -> Diagnostic
         });
         problem.labels = moved.collect();
     }
-    problems.into_iter().map(|problem| with_hint(problem, composed)).collect()
+    let hinted = problems.into_iter().zip(places);
+    hinted.map(|(problem, place)| with_hint(problem, composed, place)).collect()
+}
+
+/// Whether a text ends in `let` or `var` and a name.
+fn declares_as_in_wgsl(before: &str) -> bool {
+    let mut words = before.split_whitespace().rev();
+    words.next().is_some() && matches!(words.next(), Some("let" | "var"))
 }
 
 /// A name that nothing declares may be one of the library's. A call that fits nothing shows what
 /// there is.
-fn with_hint(problem: Diagnostic, composed: &Composed) -> Diagnostic {
+fn with_hint(problem: Diagnostic, composed: &Composed, place: Option<Range<usize>>) -> Diagnostic {
     let message = problem.message.clone();
+    let before = place.as_ref().and_then(|place| composed.text.get(..place.start));
+    if message == "expected `;`, found `:`" && before.is_some_and(declares_as_in_wgsl) {
+        return problem.note("help: GLSL declares with the type in front: `vec3 color = ...;`");
+    }
     let quoted = message.strip_prefix('`').and_then(|rest| rest.split_once('`'));
     match quoted {
         Some((name, " is not declared")) => {
-            hints::hint_unknown(Diagnostic { notes: Vec::new(), ..problem }, composed, name)
+            hints::hint_unknown(Diagnostic { notes: Vec::new(), ..problem }, composed, name, place)
         }
         Some((name, rest)) if rest.starts_with(" does not take (") => {
             let mismatch = Diagnostic { code: codes::CALL_MISMATCH, ..problem };

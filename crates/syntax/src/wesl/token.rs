@@ -296,6 +296,9 @@ impl TokenScanner<'_> {
             '#' => {
                 found.at(span, "WGSL has no preprocessor").note("help: use `import` and `@if(...)`")
             }
+            '?' => found
+                .at(span, "WGSL has no `?:`")
+                .note("help: `select(otherwise, value, condition)`"),
             _ => found.at(span, "not a character of WGSL"),
         }
     }

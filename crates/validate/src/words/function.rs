@@ -1,7 +1,9 @@
 //! Statements, calls and local variables of a function.
 
+use naga::front::Typifier;
+use naga::proc::ResolveContext;
 use naga::valid::{CallError, FunctionError, LocalVariableError, SubgroupError};
-use naga::{Function, Handle, Module};
+use naga::{Block, Expression, Function, Handle, Module, Statement};
 
 use super::{Sentence, expression, foreign_words, inner_type_text, lacking_words, type_text};
 use lamplight_diagnostic::codes;
@@ -28,10 +30,12 @@ pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> 
         }
         FunctionError::ContinueOutsideOfLoop => "`continue` is outside of a loop".to_owned(),
         FunctionError::InvalidReturnSpot => "`return` is in a `continuing` block".to_owned(),
-        FunctionError::InvalidReturnType { expected_ty, .. } => {
-            return returned_words(module, *expected_ty);
+        FunctionError::InvalidReturnType { expression, expected_ty } => {
+            return returned_words(module, of, *expression, *expected_ty);
         }
-        FunctionError::InvalidIfType(_) => "the condition of `if` is not a `bool`".to_owned(),
+        FunctionError::InvalidIfType(condition) => {
+            return condition_words(module, of, *condition);
+        }
         FunctionError::InvalidSwitchType(_) => "`switch` needs an integer".to_owned(),
         FunctionError::ConflictingSwitchCase(_) => "a case occurs twice".to_owned(),
         FunctionError::ConflictingCaseType => "the cases have different types".to_owned(),
@@ -116,14 +120,87 @@ pub fn mismatch_words(message: impl Into<String>) -> Sentence {
     Sentence::coded(codes::TYPE_MISMATCH, message)
 }
 
-fn returned_words(module: &Module, expected: Option<Handle<naga::Type>>) -> Sentence {
-    match expected {
-        Some(expected) => mismatch_words(format!(
-            "the function returns {}, and this has another type",
-            type_text(module, expected)
-        )),
-        None => mismatch_words("the function returns nothing"),
-    }
+fn returned_words(
+    module: &Module,
+    of: &Function,
+    value: Option<Handle<Expression>>,
+    expected: Option<Handle<naga::Type>>,
+) -> Sentence {
+    let statement = statement_span(
+        &of.body,
+        &|found| matches!(found, Statement::Return { value: returned } if *returned == value),
+    );
+    let found = value.and_then(|value| value_type(module, of, value));
+    let sentence = match (expected.map(|expected| type_text(module, expected)), found) {
+        (Some(expected), Some(found)) => {
+            mismatch_words(format!("the function returns {expected}, and this is {found}"))
+        }
+        (Some(expected), None) if value.is_none() => {
+            mismatch_words(format!("the function returns {expected}, and can end without a value"))
+                .note("help: add a `return` at its end, or in each branch")
+        }
+        (Some(expected), None) => {
+            mismatch_words(format!("the function returns {expected}, and this has another type"))
+        }
+        (None, Some(found)) => {
+            mismatch_words(format!("the function returns nothing, and this is {found}"))
+                .note(format!("help: write `-> {}` after its parameters", found.replace('`', "")))
+        }
+        (None, None) => mismatch_words("the function returns nothing"),
+    };
+    Sentence { statement, ..sentence }
+}
+
+fn condition_words(module: &Module, of: &Function, condition: Handle<Expression>) -> Sentence {
+    let statement = statement_span(&of.body, &|found| match found {
+        Statement::If { condition: found, .. } => *found == condition,
+        Statement::Loop { break_if, .. } => *break_if == Some(condition),
+        _ => false,
+    });
+    let sentence = match value_type(module, of, condition) {
+        Some(found) => {
+            let advice = match found.trim_matches('`') {
+                "f32" | "f16" => Some("help: compare it: `x != 0.0`"),
+                "i32" | "u32" => Some("help: compare it: `x != 0`"),
+                vector if vector.ends_with("<bool>") => Some("help: `all(x)` or `any(x)`"),
+                _ => None,
+            };
+            let sentence = Sentence::plain(format!("the condition is {found}, and must be `bool`"));
+            advice.into_iter().fold(sentence, Sentence::note)
+        }
+        None => Sentence::plain("the condition of `if` is not a `bool`"),
+    };
+    Sentence { statement, ..sentence }
+}
+
+/// The type of a value, as WGSL spells it.
+fn value_type(module: &Module, of: &Function, value: Handle<Expression>) -> Option<String> {
+    let mut typifier = Typifier::new();
+    let context = ResolveContext::with_locals(module, &of.local_variables, &of.arguments);
+    typifier.grow(value, &of.expressions, &context).ok()?;
+    Some(inner_type_text(module, typifier.get(value, &module.types)))
+}
+
+/// Where the first statement is that satisfies `is_meant`, in the order of the text.
+fn statement_span(block: &Block, is_meant: &dyn Fn(&Statement) -> bool) -> Option<naga::Span> {
+    block.span_iter().find_map(|(statement, span)| {
+        if is_meant(statement) {
+            return Some(*span);
+        }
+        match statement {
+            Statement::Block(block) => statement_span(block, is_meant),
+            Statement::If { condition: _, accept, reject } => {
+                statement_span(accept, is_meant).or_else(|| statement_span(reject, is_meant))
+            }
+            Statement::Switch { selector: _, cases } => {
+                cases.iter().find_map(|case| statement_span(&case.body, is_meant))
+            }
+            Statement::Loop { body, continuing, break_if: _ } => {
+                statement_span(body, is_meant).or_else(|| statement_span(continuing, is_meant))
+            }
+            _ => None,
+        }
+    })
 }
 
 fn local_words(

@@ -16,9 +16,7 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
         GlobalVariableError::InvalidBindingArray(handle) => {
             format!("there are no arrays of bindings of {}", type_text(module, *handle))
         }
-        GlobalVariableError::MissingTypeFlags { .. } => format!(
-            "`{name}` has a type that cannot be in a buffer: booleans, textures and pointers cannot"
-        ),
+        GlobalVariableError::MissingTypeFlags { .. } => return held_words(module, name),
         GlobalVariableError::UnsupportedCapability(capabilities) => {
             return lacking_words(*capabilities);
         }
@@ -115,4 +113,30 @@ pub fn space_name(space: AddressSpace) -> &'static str {
         | AddressSpace::RayPayload
         | AddressSpace::IncomingRayPayload => "memory that no target has",
     }
+}
+
+/// About a variable whose type its address space cannot hold.
+fn held_words(module: &Module, name: &str) -> Sentence {
+    if is_endless(module, name) {
+        return Sentence::plain(format!(
+            "`{name}` is an array without a length, which only `storage` can hold"
+        ))
+        .note("help: give it a length, or declare it as `var<storage>`");
+    }
+    Sentence::plain(format!(
+        "`{name}` has a type that cannot be in a buffer: booleans, textures and pointers cannot"
+    ))
+}
+
+/// Whether a variable that is not in `storage` is an array without a length.
+fn is_endless(module: &Module, name: &str) -> bool {
+    let named =
+        module.global_variables.iter().find(|(_, found)| found.name.as_deref() == Some(name));
+    named.is_some_and(|(_, variable)| {
+        let is_dynamic = matches!(
+            module.types[variable.ty].inner,
+            TypeInner::Array { size: naga::ArraySize::Dynamic, .. }
+        );
+        is_dynamic && !matches!(variable.space, AddressSpace::Storage { .. })
+    })
 }

@@ -28,11 +28,20 @@ pub struct Sentence {
     pub notes: Vec<String>,
     /// A second place, besides that of naga's error, with its label.
     pub beside: Option<(naga::Span, String)>,
+    /// The statement that is wrong, where naga names only a value in it, which may be declared
+    /// elsewhere.
+    pub statement: Option<naga::Span>,
 }
 
 impl Sentence {
     fn plain(message: impl Into<String>) -> Self {
-        Self { code: None, message: message.into(), notes: Vec::new(), beside: None }
+        Self {
+            code: None,
+            message: message.into(),
+            notes: Vec::new(),
+            beside: None,
+            statement: None,
+        }
     }
 
     fn coded(code: &'static Code, message: impl Into<String>) -> Self {
