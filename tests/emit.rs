@@ -13,6 +13,7 @@ use lamplight::diagnostic::render::{Form, render};
 use lamplight::emit::{self, Emitted};
 use lamplight::source::SourceSet;
 use lamplight::validate::{self, Validated, validate};
+use lamplight::validators::agreement::output_differences;
 use lamplight_testing::text::wrap;
 use libtest_mimic::{Failed, Trial};
 
@@ -49,6 +50,10 @@ fn valid(path: &Path) -> Outcome {
                 .map_err(|error| render(&sources, &[error], Form::Human))?;
             same_from_the_whole(&validated, &point.name, *target, &emitted)?;
             accepted(&point.name, point.stage, *target, &emitted)?;
+            let found = output_differences(*target, &emitted.bytes, &reflection, &emitted.native);
+            if !found.is_empty() {
+                return Err(format!("{} in {target}: {}", point.name, found.join("\n")).into());
+            }
             summary +=
                 &format!("{} {target}: {}\n", point.name, serde_json::to_string(&emitted.native)?);
         }

@@ -273,7 +273,16 @@ fn validators_accept() -> Result<(), Failed> {
             let file = folder.path().join(format!("{}.{}", some.len(), artifact.extension));
             std::fs::write(&file, &artifact.bytes)?;
             let (stage, entry) = (unit.reflection.stage, artifact.native.entry_name.clone());
-            some.push(validators::Output { target: *target, stage, entry, file, unit: hash });
+            some.push(validators::Output {
+                target: *target,
+                stage,
+                entry,
+                file,
+                unit: hash,
+                reflection: unit.reflection.clone(),
+                native: artifact.native.clone(),
+                description: validators::describe(&unit.reflection, &artifact.native),
+            });
         }
         let found = some.len() - before;
         if found < LEAST_VALIDATED {

@@ -14,6 +14,7 @@
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
+mod agreement;
 mod bounds;
 mod browser;
 mod catalogue;
@@ -79,6 +80,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     browser::tests,
     catalogue::tests,
     clients::tests,
+    agreement::tests,
     bounds::tests,
     conventions::tests,
     cost::tests,

@@ -1,5 +1,7 @@
 //! Runs the validators of all targets on the outputs of random programs.
 
+use std::sync::Arc;
+
 use lamplight::validators;
 
 use super::same::Output;
@@ -23,6 +25,9 @@ pub fn refused(outputs: &[&Output]) -> Result<Vec<Refusal>, String> {
             entry: output.artifact.native.entry_name.clone(),
             file,
             unit: [0; 16],
+            reflection: Arc::new(output.reflection.clone()),
+            native: output.artifact.native.clone(),
+            description: index.to_string(),
         });
     }
     let refusals = validators::validate_outputs(&files, None, &|_, _| ())?;

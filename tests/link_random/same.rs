@@ -13,6 +13,7 @@ use lamplight::permute::{Manifest, Quoted, manifest};
 use lamplight::resolve::{self, Packages};
 use lamplight::source::{Memory, Package, SourceSet};
 use lamplight::validate::validate;
+use lamplight::validators::agreement::output_differences;
 
 use super::program::Program;
 use super::run::Runnable;
@@ -234,17 +235,28 @@ impl Sound {
     }
 }
 
-/// Fails unless the crate accepts its own WGSL.
+/// Fails unless the crate accepts its own WGSL, and each output has what its reflection says.
 fn read_again(output: &Output) -> Result<(), Finding> {
-    if output.target != Target::WGSL {
-        return Ok(());
+    let Output { target, artifact, reflection } = output;
+    if *target == Target::WGSL {
+        let text = String::from_utf8_lossy(&artifact.bytes).into_owned();
+        let composed = Composed::of_text(Language::Wesl, None, text.clone());
+        validate(&composed).map_err(|problems| {
+            let words: Vec<&str> = problems.iter().map(|one| one.message.as_str()).collect();
+            Finding::new("wgsl: refused", format!("{}\n{text}", words.join("\n")))
+        })?;
     }
-    let text = String::from_utf8_lossy(&output.artifact.bytes).into_owned();
-    let composed = Composed::of_text(Language::Wesl, None, text.clone());
-    validate(&composed).map(|_| ()).map_err(|problems| {
-        let words: Vec<&str> = problems.iter().map(|one| one.message.as_str()).collect();
-        Finding::new("wgsl: refused", format!("{}\n{text}", words.join("\n")))
-    })
+    let differences = output_differences(*target, &artifact.bytes, reflection, &artifact.native);
+    match differences.first() {
+        None => Ok(()),
+        Some(first) => {
+            let plain = first.split(['`', '"']).step_by(2).flat_map(str::chars);
+            let kind: String = plain.filter(|one| !one.is_ascii_digit()).take(80).collect();
+            let text = String::from_utf8_lossy(&artifact.bytes);
+            let about = format!("{}\n{reflection:#?}\n{text}", differences.join("\n"));
+            Err(Finding::new(format!("{target} differs from its reflection: {kind}"), about))
+        }
+    }
 }
 
 /// Fails if two units differ, with what differs and both forms of it.

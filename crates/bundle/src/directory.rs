@@ -112,9 +112,16 @@ pub struct BlobFile {
     pub path: PathBuf,
     /// A unit that has this blob.
     pub unit: Hash,
+    /// What the bundle says of the entry point.
+    pub reflection: Arc<Reflection>,
+    /// What the bundle says of the entry point in this target.
+    pub native: Arc<Native>,
+    /// The names of both in the manifest, which are hashes of their content.
+    pub description: String,
 }
 
-/// Every distinct blob of a directory bundle: for tools that take files.
+/// Every distinct blob of a directory bundle: for tools that take files. A blob that the bundle
+/// describes in several ways is listed with each.
 pub fn blob_files(path: impl AsRef<Path>) -> Result<BTreeSet<BlobFile>, Error> {
     let path = path.as_ref();
     blob_files_of_manifest(&read_manifest(path)?, &|name| path.join(BLOBS).join(name))
@@ -126,24 +133,34 @@ pub(super) fn blob_files_of_manifest(
     place: &dyn Fn(&str) -> PathBuf,
 ) -> Result<BTreeSet<BlobFile>, Error> {
     let lost = |what: &str| Error::corrupt(MANIFEST, format!("a unit names no {what}"));
+    let (reflections, natives) =
+        (shared_values(&manifest.reflections), shared_values(&manifest.natives));
     let mut files = BTreeMap::new();
     for (name, unit) in &manifest.units {
-        let reflection = manifest.reflections.get(&unit.reflection);
-        let stage = reflection.ok_or_else(|| lost("reflection"))?.stage;
+        let reflection = reflections.get(&unit.reflection).ok_or_else(|| lost("reflection"))?;
         let hash = from_hex(name).ok_or_else(|| Error::corrupt(MANIFEST, "a unit has no name"))?;
         for (target, artifact) in &unit.targets {
-            let native = manifest.natives.get(&artifact.native).ok_or_else(|| lost("native"))?;
+            let native = natives.get(&artifact.native).ok_or_else(|| lost("native"))?;
+            let described = (&unit.reflection, &artifact.native);
             let file = artifact.file()?;
-            files.entry((target, file)).or_insert_with_key(|(_, file)| BlobFile {
+            files.entry((target, file, described)).or_insert_with_key(|(_, file, _)| BlobFile {
                 target: target.clone(),
-                stage,
+                stage: reflection.stage,
                 entry: native.entry_name.clone(),
                 path: place(file),
                 unit: hash,
+                reflection: reflection.clone(),
+                native: native.clone(),
+                description: format!("{}-{}", unit.reflection, artifact.native),
             });
         }
     }
     Ok(files.into_values().collect())
+}
+
+/// The values of a table, each once in memory however many refer to it.
+fn shared_values<T: Clone>(values: &BTreeMap<String, T>) -> BTreeMap<&String, Arc<T>> {
+    values.iter().map(|(name, value)| (name, Arc::new(value.clone()))).collect()
 }
 
 impl Directory {

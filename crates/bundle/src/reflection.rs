@@ -6,7 +6,7 @@ use super::names::Stage;
 
 /// One entry point. This is the same for every target. Types are spelt as in WGSL; sizes, offsets
 /// and strides are in bytes.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Reflection {
     /// Stage of the entry point.
     pub stage: Stage,
@@ -41,7 +41,7 @@ impl Reflection {
 }
 
 /// A value that enters or leaves the stage.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Varying {
     /// The author's name of the argument or the member.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -85,7 +85,7 @@ pub enum BindingKind {
 }
 
 /// A resource.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Binding {
     /// Group in WGSL, descriptor set in Vulkan.
     pub group: u32,
@@ -119,7 +119,7 @@ pub struct Binding {
 }
 
 /// A member of a struct in a buffer.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Member {
     /// As the author calls it.
     pub name: String,
@@ -142,7 +142,7 @@ pub struct Member {
 }
 
 /// A type of numbers, so that no reader has to parse the type's name.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Shape {
     /// `f32`, `i32`, `u32`, `f16`, or another scalar type of WGSL. `None` for an array whose
     /// elements are structs or arrays.
@@ -163,7 +163,7 @@ pub struct Shape {
 }
 
 /// What a layout of WebGPU or Vulkan has to know of a texture.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct TextureShape {
     /// `1d`, `2d`, `2d_array`, `3d`, `cube` or `cube_array`.
     pub dimension: String,
@@ -222,7 +222,7 @@ pub struct Pair {
 }
 
 /// A constant that is chosen when the pipeline is made: [`Native::choices`] says how.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Override {
     /// As the author calls it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -239,7 +239,7 @@ pub struct Override {
 }
 
 /// How one target names and numbers things.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Native {
     /// Name of the entry point in the output.
     pub entry_name: String,
@@ -274,7 +274,7 @@ pub struct Native {
 
 /// The clip space in which an output expects the author's positions, and what the host has to do
 /// for it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ClipSpace {
     /// Where the author's y axis points in the picture.
     pub y: YAxis,
@@ -293,7 +293,7 @@ pub struct ClipSpace {
 }
 
 /// Direction of an axis in the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum YAxis {
     /// Upwards.
@@ -303,7 +303,7 @@ pub enum YAxis {
 }
 
 /// Sign of a viewport's height.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Viewport {
     /// A positive height, as usual.
@@ -313,7 +313,7 @@ pub enum Viewport {
 }
 
 /// Order of rows in memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", rename = "Rows")]
 pub enum RowOrder {
     /// The top row.
@@ -323,7 +323,7 @@ pub enum RowOrder {
 }
 
 /// The winding that the API sees for a triangle that is counter-clockwise in the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FrontFace {
     /// Counter-clockwise.
@@ -339,7 +339,7 @@ pub enum FrontFace {
 /// - SPIR-V: as the specialisation constant `id`.
 /// - MSL: as the function constant `id`.
 /// - Others: as the macro `symbol`, defined before the text (in GLSL after `#version`).
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename = "Choice")]
 pub struct OverrideChoice {
     /// As in the reflection.
@@ -353,7 +353,7 @@ pub struct OverrideChoice {
 }
 
 /// The place of one binding in a target.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename = "Slot")]
 pub struct BindingSlot {
     /// Group in WGSL, descriptor set in Vulkan.
@@ -375,7 +375,7 @@ pub struct BindingSlot {
 }
 
 /// The semantic of a vertex attribute: `LOC` and 3 for `LOC3`.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Semantic {
     /// As in the reflection.
     pub location: u32,
@@ -387,7 +387,7 @@ pub struct Semantic {
 
 /// An array of samplers that the host binds once. A shader finds each of its samplers there by an
 /// index that the host wrote into a buffer.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct SamplerHeap {
     /// The identifier in the output.
     pub name: String,
@@ -405,7 +405,7 @@ pub struct SamplerHeap {
 
 /// A sampler in a heap. Its index in the heap is in element `element` of a structured buffer of
 /// 32-bit numbers.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct HeapSampler {
     /// Group of the sampler in WGSL.
     pub group: u32,
@@ -420,7 +420,7 @@ pub struct HeapSampler {
 }
 
 /// An argument with the sizes of buffers whose last member is a runtime-sized array.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct BufferSizes {
     /// Its place in the table of buffers.
     pub index: u32,

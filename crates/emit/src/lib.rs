@@ -37,6 +37,7 @@ mod specialise;
 pub mod spirv;
 mod strides;
 mod text;
+mod unused;
 mod zeros;
 
 pub use filters::without_derivative_rule;

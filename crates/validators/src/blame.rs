@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use super::agreement::AGREEMENT;
 use super::{Output, Refusal};
 use lamplight_bundle::{Contents, Target};
 use lamplight_compose::resolve::Packages;
@@ -62,10 +63,7 @@ pub fn blame(
 }
 
 fn blame_one(sources: &mut SourceSet, made: &OutputOrigin<'_>, refusal: &Refusal) -> Diagnostics {
-    let error = Diagnostic::error(
-        codes::OUTPUT_REFUSED,
-        format!("{} refuses the output for `{}`", refusal.validator, refusal.output.target),
-    );
+    let error = Diagnostic::error(codes::OUTPUT_REFUSED, refusal_words(refusal));
     let line = refused_line(refusal);
     let words: Vec<&str> = refusal.message.lines().take(LINES).collect();
     let mut error = error.note(words.join("\n"));
@@ -79,6 +77,14 @@ fn blame_one(sources: &mut SourceSet, made: &OutputOrigin<'_>, refusal: &Refusal
         Ok(None) | Err(_) => {
             vec![error.note(format!("in permutation `{}` of {}", named.key, named.program))]
         }
+    }
+}
+
+fn refusal_words(refusal: &Refusal) -> String {
+    let target = refusal.output.target;
+    match refusal.validator {
+        AGREEMENT => format!("the output for `{target}` differs from its reflection"),
+        validator => format!("{validator} refuses the output for `{target}`"),
     }
 }
 

@@ -4,10 +4,14 @@
 //! outputs that are known to have passed before. An [`Extent`] says whether it takes all others, or
 //! only a selection that has each distinct line.
 //!
+//! Each output is also read again, by [`agreement`], and refused where it has other bindings or
+//! another layout than the reflection that is shipped with it.
+//!
 //! Each file of `programs/` is a validator, and each target names one, so no target is without one.
 //! Programs are started for batches of outputs. If a batch is refused, its halves are validated,
 //! until the outputs at fault are found.
 
+pub mod agreement;
 mod blame;
 mod extent;
 mod known;
@@ -19,12 +23,15 @@ mod verdict;
 
 use std::collections::BTreeMap;
 use std::fmt;
-use std::path::PathBuf;
+use std::hash::{Hash as _, Hasher as _};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use rayon::prelude::*;
 
+use agreement::plan_agreement;
 pub use blame::{OutputOrigin, blame};
 pub use extent::Extent;
 pub use novel::{Novelty, SeenText};
@@ -32,7 +39,7 @@ pub use record::BundleRecord;
 pub use tint::Tint;
 pub use verdict::{Verdict, verdict};
 
-use lamplight_bundle::{BlobFile, Error, Hash, Stage, Target};
+use lamplight_bundle::{BlobFile, Error, Hash, Native, Reflection, Stage, Target};
 use lamplight_emit::{ValidatorRules, targets};
 use lamplight_files::output::Scratch;
 use lamplight_tools::Tool;
@@ -94,20 +101,39 @@ pub struct Output {
     pub file: PathBuf,
     /// A unit of the bundle that has it.
     pub unit: Hash,
+    /// What the bundle says of its entry point.
+    pub reflection: Arc<Reflection>,
+    /// What the bundle says of its entry point in this target.
+    pub native: Arc<Native>,
+    /// A name for what the bundle says.
+    pub description: String,
 }
 
 impl Output {
-    /// A name for its content, so that an output which passed once is not validated again.
+    /// A name for its content and for what the bundle says of it, so that an output which passed
+    /// once is not validated again.
     fn name(&self) -> String {
-        self.file.file_name().unwrap_or_default().to_string_lossy().into_owned()
+        let file = self.file.file_name().unwrap_or_default().to_string_lossy();
+        format!("{file} {}", self.description)
     }
 
     fn text(&self) -> Result<String, String> {
-        let with_path = |error: &dyn fmt::Display| format!("`{}`: {error}", self.file.display());
-        let bytes = lamplight_files::input::read_file(&self.file, u64::MAX)
-            .map_err(|error| with_path(&error))?;
-        String::from_utf8(bytes).map_err(|error| with_path(&error))
+        let text = String::from_utf8(read_bytes(&self.file)?);
+        text.map_err(|error| format!("`{}`: {error}", self.file.display()))
     }
+}
+
+/// A name for what is said of an output that no bundle lists: equal for equal descriptions.
+pub fn describe(reflection: &Reflection, native: &Native) -> String {
+    let mut hasher = std::hash::DefaultHasher::new();
+    (reflection, native).hash(&mut hasher);
+    format!("{:016x}", hasher.finish())
+}
+
+/// The bytes of a file.
+fn read_bytes(file: &Path) -> Result<Vec<u8>, String> {
+    lamplight_files::input::read_file(file, u64::MAX)
+        .map_err(|error| format!("`{}`: {error}", file.display()))
 }
 
 /// The outputs in the files of a bundle.
@@ -121,8 +147,9 @@ pub fn outputs(files: impl IntoIterator<Item = BlobFile>) -> Result<Vec<Output>,
             name: file.target.clone(),
             known: Target::ALL.iter().map(|target| target.name().to_owned()).collect(),
         })?;
-        let BlobFile { stage, entry, path, unit, .. } = file;
-        Ok(Output { target, stage, entry, file: path, unit })
+        let BlobFile { target: _, stage, entry, path, unit, reflection, native, description } =
+            file;
+        Ok(Output { target, stage, entry, file: path, unit, reflection, native, description })
     };
     files.into_iter().map(one).collect()
 }
@@ -201,31 +228,45 @@ pub fn validate_outputs(
     progress: ValidatorProgress<'_>,
 ) -> ValidatorResult {
     let outputs: Vec<&Output> = outputs.iter().collect();
-    on_large_stack(|| Ok(validate_timed(&outputs, tint, progress)?.0))
+    on_large_stack(|| Ok(validate_timed(&outputs, &[], tint, progress)?.0))
+}
+
+/// Reads every output again, and refuses those that differ from their reflections. No other
+/// validator is asked.
+///
+/// # Errors
+/// A message, if a program that reads outputs cannot be run.
+pub fn read_again(outputs: &[Output]) -> ValidatorResult {
+    let outputs: Vec<&Output> = outputs.iter().collect();
+    on_large_stack(|| Ok(validate_timed(&[], &outputs, None, &|_, _| ())?.0))
 }
 
 /// Refusals, and the seconds that each target took, added over all cores.
 type TimedRefusals = (Vec<Refusal>, BTreeMap<Target, f64>);
 
-/// [`validate_outputs`] on the threads of the caller.
+/// [`validate_outputs`] on the threads of the caller. Those of `sample` are only read again.
 fn validate_timed(
     outputs: &[&Output],
+    sample: &[&Output],
     tint: Option<&Tint>,
     progress: ValidatorProgress<'_>,
 ) -> Result<TimedRefusals, String> {
     let mut sorted = outputs.to_vec();
     sorted.sort();
+    // The validator of WGSL reads its outputs itself.
+    let own = sorted.iter().filter(|output| output.target != Target::WGSL);
+    let mut read: Vec<&Output> = own.chain(sample).copied().collect();
+    read.sort();
     let scratch = Scratch::new(&std::env::temp_dir()).map_err(|error| error.to_string())?;
     let alike = |one: &&Output, other: &&Output| {
         (one.target, one.stage, &one.entry) == (other.target, other.stage, &other.entry)
     };
     let groups: Vec<&[&Output]> = sorted.chunk_by(alike).collect();
-    let planned = groups.par_iter().map(|group| {
-        let works = plan_group(group, tint, &scratch)?;
-        Ok(works.into_iter().map(|work| (group[0].target, work)).collect())
-    });
-    let works = planned.collect::<Result<Vec<Vec<(Target, ValidatorWork<'_>)>>, String>>()?;
-    let works: Vec<(Target, ValidatorWork<'_>)> = works.into_iter().flatten().collect();
+    let read_groups: Vec<&[&Output]> = read.chunk_by(alike).collect();
+    let planned = groups.par_iter().map(|group| plan_group(group, tint, &scratch));
+    let mut works = named_works(&groups, planned.collect::<Result<_, String>>()?);
+    let planned = read_groups.par_iter().map(|group| plan_agreement(group));
+    works.extend(named_works(&read_groups, planned.collect::<Result<_, String>>()?));
     let total = works.iter().map(|(_, work)| work.outputs).sum();
     let done = AtomicUsize::new(0);
     let found = works.par_iter().map(|(target, work)| {
@@ -243,6 +284,18 @@ fn validate_timed(
     // One refusal for an output is enough, even if it breaks several rules.
     refusals.dedup_by(|one, other| one.output == other.output);
     Ok((refusals, seconds))
+}
+
+/// The works for groups, each with its target.
+fn named_works<'w>(
+    groups: &[&[&Output]],
+    works: Vec<Vec<ValidatorWork<'w>>>,
+) -> Vec<(Target, ValidatorWork<'w>)> {
+    let named = groups.iter().zip(works).flat_map(|(group, works)| {
+        let target = group.first().map(|output| output.target);
+        works.into_iter().filter_map(move |work| Some((target?, work)))
+    });
+    named.collect()
 }
 
 /// The work for outputs of one target, stage and name of the entry point.

@@ -8,6 +8,7 @@ use lamplight_generate::{TargetValidation, Validation};
 use lamplight_validate::on_large_stack;
 use rayon::prelude::*;
 
+use crate::agreement::sample_of_lines;
 use crate::known::KnownOutputs;
 use crate::lines::{SeenLines, texts_of_units, with_new_lines};
 use crate::{
@@ -28,6 +29,8 @@ pub struct Verdict {
 struct TargetPlan<'o> {
     target: Target,
     chosen: Vec<&'o Output>,
+    /// What is only read again.
+    sample: Vec<&'o Output>,
     all: &'o [Output],
     known: KnownOutputs,
     report: TargetValidation,
@@ -53,7 +56,9 @@ pub fn verdict(
         return Ok(verdict);
     }
     outputs.sort();
-    outputs.dedup_by(|one, other| (&one.file, &one.target) == (&other.file, &other.target));
+    outputs.dedup_by(|one, other| {
+        (&one.file, one.target, &one.description) == (&other.file, other.target, &other.description)
+    });
     let found = on_large_stack(|| {
         let texts = match extent {
             Extent::Lines => texts_of_units(&outputs),
@@ -66,7 +71,8 @@ pub fn verdict(
         let chosen: Vec<&Output> = plans.iter().flat_map(|plan| plan.chosen.clone()).collect();
         // A part of the validators of WGSL can go on without Tint.
         let is_tint_there = missing(Target::WGSL, tint).is_none();
-        let validated = validate_timed(&chosen, is_tint_there.then_some(tint), progress)?;
+        let sample: Vec<&Output> = plans.iter().flat_map(|plan| plan.sample.clone()).collect();
+        let validated = validate_timed(&chosen, &sample, is_tint_there.then_some(tint), progress)?;
         Ok::<_, String>((plans, validated))
     });
     let (plans, (refusals, seconds)) = found?;
@@ -100,24 +106,33 @@ fn plan_target<'o>(
         ..TargetValidation::default()
     };
     if lacks.is_some() && !validator.goes_on {
-        return Ok(TargetPlan { target, chosen: Vec::new(), all: &[], known, report });
+        return Ok(TargetPlan {
+            target,
+            chosen: Vec::new(),
+            sample: Vec::new(),
+            all: &[],
+            known,
+            report,
+        });
     }
     report.validators = (validator.validators)(named.rules, tint);
     let (old, fresh): (Vec<&Output>, Vec<&Output>) =
         all.iter().partition(|output| known.names.contains(&output.name()));
     report.before = old.len();
+    let mut sample = Vec::new();
     let chosen = match extent {
         Extent::Lines => {
             let mut seen = SeenLines::before(std::mem::take(&mut known.lines));
             let chosen = with_new_lines(&fresh, texts, &mut seen)?;
             report.lines = Some(seen.new);
             known.lines = seen.hashes;
+            sample = sample_of_lines(&fresh, &chosen);
             chosen
         }
         Extent::All | Extent::Nothing => fresh,
     };
     report.now = chosen.len();
-    Ok(TargetPlan { target, chosen, all, known, report })
+    Ok(TargetPlan { target, chosen, sample, all, known, report })
 }
 
 impl TargetPlan<'_> {

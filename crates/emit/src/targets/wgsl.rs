@@ -9,6 +9,7 @@ use crate::slots::{Numbering, native_reflection};
 use crate::text::BoundedText;
 use crate::{
     EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, extensions, filters, specialise,
+    unused,
 };
 use lamplight_bundle::{OverrideChoice, Target};
 
@@ -46,6 +47,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         None => text,
     };
     let text = filters::with_filters(&text, source.module)?;
+    let text = unused::without_unused_bindings(text, source);
     let text = extensions::with_extensions(text, source.module);
     // naga does not return the names that it wrote, and it appends an underscore to names that end
     // with a digit.

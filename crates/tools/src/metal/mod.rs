@@ -43,7 +43,7 @@ pub fn validate_batch(clang: &Clang, batch: &[IndexedText<'_>]) -> Refusals {
             None => sound.push((*index, *text)),
         }
     }
-    refusals.extend(validate_sound(clang, &sound)?);
+    refusals.extend(validate_declarations(clang, &sound)?);
     Ok(refusals)
 }
 
@@ -60,11 +60,16 @@ fn before_clang(text: &str) -> Option<String> {
     attributes::first_mistake(text)
 }
 
-type IndexedText<'t> = (usize, &'t str);
+/// A text and its number.
+pub type IndexedText<'t> = (usize, &'t str);
 
-/// Validates a batch. Its halves are validated if it is refused, since a mistake in one text may
-/// make others look wrong.
-fn validate_sound(clang: &Clang, batch: &[IndexedText<'_>]) -> Refusals {
+/// Validates texts that may be declarations alone, without an entry point.
+///
+/// # Errors
+/// clang cannot be run.
+pub fn validate_declarations(clang: &Clang, batch: &[IndexedText<'_>]) -> Refusals {
+    // Its halves are validated if it is refused, since a mistake in one text may make others look
+    // wrong.
     let compiled = |batch: &[IndexedText<'_>]| clang.compile(&unit_text(batch), &["-fsyntax-only"]);
     let together = |batch: &[IndexedText<'_>]| Ok(compiled(batch)?.status.success().then(Vec::new));
     let alone = |one: &IndexedText<'_>| {

@@ -2,6 +2,7 @@
 //! are no rules.
 
 
+use crate::agreement::module_differences;
 use crate::tint::TintMistake;
 use crate::{
     Output, OutputGroup, Refusal, Tint, ValidatorEntry, ValidatorResult, ValidatorWork,
@@ -54,15 +55,19 @@ fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
             let line = error.location(&text).map(|place| place.line_number);
             at_line(line, error.emit_to_string(&text))
         })?;
-        info_for_some(&module).map(|_| ()).map_err(|error| {
+        let info = info_for_some(&module).map_err(|error| {
             let line = error.location(&text).map(|place| place.line_number);
             at_line(line, error.emit_to_string(&text))
-        })
+        })?;
+        Ok(module_differences(module, info, output.described()))
     });
     let validated = validated.unwrap_or_else(|error| Err((None, error.message)));
     let refusal =
         |(line, message)| Refusal { output: output.clone(), validator: "naga", line, message };
-    Ok(validated.err().map(refusal))
+    Ok(match validated {
+        Ok(differences) => output.disagreement(&differences),
+        Err(error) => Some(refusal(error)),
+    })
 }
 
 fn by_tint(outputs: &[&Output], tint: &Tint) -> ValidatorResult {

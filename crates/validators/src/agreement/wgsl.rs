@@ -1,0 +1,226 @@
+//! Reads WGSL with naga's front end.
+
+use naga::valid::ModuleInfo;
+use naga::{
+    AddressSpace, ArraySize, GlobalVariable, Handle, ImageClass, ImageDimension, Module, Scalar,
+    ScalarKind, ShaderStage, Type, TypeInner, VectorSize,
+};
+
+use lamplight_bundle::{Binding, BindingKind, BindingSlot, Language, Stage, Varying};
+use lamplight_emit::reflect;
+use lamplight_validate::{Validated, guard, info_for_some, parse_wgsl};
+
+use super::compare::{Differences, SlotRules, compare_reading};
+use super::described::Described;
+use super::reading::{MOST_LEVELS, ReadBinding, ReadMember, ReadType, Reading};
+use super::unread;
+
+/// What differs between a text and what a bundle says of it.
+pub fn text_differences(text: &str, described: Described<'_>) -> Result<Vec<String>, String> {
+    let read = || {
+        let module = parse_wgsl(text).map_err(|error| error.emit_to_string(text))?;
+        let info = info_for_some(&module).map_err(|error| error.emit_to_string(text))?;
+        Ok(module_differences(module, info, described))
+    };
+    guard(text, read).map_err(|error| error.message)?
+}
+
+/// The same for a text that naga has read.
+pub fn module_differences(
+    module: Module,
+    info: ModuleInfo,
+    described: Described<'_>,
+) -> Vec<String> {
+    compare_module(module, info, described).unwrap_or_else(|reason| vec![unread(&reason)])
+}
+
+fn compare_module(
+    module: Module,
+    info: ModuleInfo,
+    described: Described<'_>,
+) -> Result<Vec<String>, String> {
+    let reading = read_module(&module, &info)?;
+    let is_at = |_: &Binding, slot: &BindingSlot, found: &ReadBinding| {
+        (slot.space, slot.index) == (found.space, found.index)
+    };
+    let mut differences =
+        compare_reading(&reading, described, &SlotRules { is_at, leaves_out: false });
+    let validated = Validated { language: Language::Wesl, module, info, portable: true };
+    differences.extend(interface_differences(&validated, described)?);
+    Ok(differences)
+}
+
+/// What enters and leaves the stage, and which textures are sampled with which samplers. Only this is
+/// compared by the function that makes reflections.
+fn interface_differences(
+    validated: &Validated,
+    described: Described<'_>,
+) -> Result<Vec<String>, String> {
+    let Some(point) = validated.module.entry_points.first() else { return Ok(Vec::new()) };
+    let found = reflect(validated, &point.name).map_err(|error| error.message)?;
+    let mut differences = Differences::default();
+    // Writers rename arguments, and number structures anew.
+    let unnamed = |varyings: &[Varying]| -> Vec<Varying> {
+        varyings
+            .iter()
+            .map(|one| Varying { name: None, ty: String::new(), ..one.clone() })
+            .collect()
+    };
+    let reflected = described.reflection;
+    differences.same("the inputs are", &unnamed(&found.inputs), &unnamed(&reflected.inputs));
+    differences.same("the outputs are", &unnamed(&found.outputs), &unnamed(&reflected.outputs));
+    differences.same("the pairs are", &found.pairs, &reflected.pairs);
+    for (found, reflected) in found.bindings.iter().zip(&reflected.bindings) {
+        let what = format!("the texture `{}` is", reflected.name);
+        differences.same(&what, &found.texture, &reflected.texture);
+        differences.same(
+            &format!("whether `{}` is written is", reflected.name),
+            &found.writable,
+            &reflected.writable,
+        );
+        differences.same(
+            &format!("the kind of `{}` is", reflected.name),
+            &found.kind,
+            &reflected.kind,
+        );
+    }
+    Ok(differences.0)
+}
+
+fn read_module(module: &Module, info: &ModuleInfo) -> Result<Reading, String> {
+    let [point] = module.entry_points.as_slice() else {
+        return Err(format!("it has {} entry points", module.entry_points.len()));
+    };
+    let stage = match point.stage {
+        ShaderStage::Vertex => Stage::Vertex,
+        ShaderStage::Fragment => Stage::Fragment,
+        ShaderStage::Compute => Stage::Compute,
+        _ => return Err("its stage is none of a bundle's".to_owned()),
+    };
+    let chosen = Some((point.stage, point.name.as_str()));
+    let (fixed, _) = naga::back::pipeline_constants::process_overrides(
+        module,
+        info,
+        chosen,
+        &Default::default(),
+    )
+    .map_err(|error| error.to_string())?;
+    let size = fixed.entry_points.first().map(|point| point.workgroup_size);
+    let bindings = fixed.global_variables.iter().map(|(_, one)| read_global(&fixed, one));
+    Ok(Reading {
+        entry: Some(point.name.clone()),
+        stage: Some(stage),
+        workgroup_size: size.filter(|_| stage == Stage::Compute),
+        bindings: bindings.collect::<Result<Vec<_>, String>>()?.into_iter().flatten().collect(),
+    })
+}
+
+fn read_global(module: &Module, variable: &GlobalVariable) -> Result<Option<ReadBinding>, String> {
+    let GlobalVariable { name, space, binding, ty, init: _, memory_decorations: _ } = variable;
+    let Some(place) = binding else { return Ok(None) };
+    let (bound, count) = match module.types[*ty].inner {
+        TypeInner::BindingArray { base, size } => (base, Some(array_count(size))),
+        _ => (*ty, None),
+    };
+    let is_buffer = matches!(space, AddressSpace::Uniform | AddressSpace::Storage { access: _ });
+    let ty = is_buffer.then(|| read_type(module, bound, MOST_LEVELS)).transpose()?;
+    let (kind, dimension) = read_kind(module, *space, bound);
+    Ok(Some(ReadBinding {
+        space: Some(place.group),
+        index: Some(place.binding),
+        register: None,
+        name: name.clone(),
+        kind,
+        count,
+        ty,
+        dimension,
+    }))
+}
+
+fn read_kind(
+    module: &Module,
+    space: AddressSpace,
+    bound: Handle<Type>,
+) -> (Option<BindingKind>, Option<String>) {
+    match (space, &module.types[bound].inner) {
+        (AddressSpace::Uniform, _) => (Some(BindingKind::Uniform), None),
+        (AddressSpace::Storage { access: _ }, _) => (Some(BindingKind::Storage), None),
+        (_, TypeInner::Sampler { comparison: false }) => (Some(BindingKind::Sampler), None),
+        (_, TypeInner::Sampler { comparison: true }) => {
+            (Some(BindingKind::ComparisonSampler), None)
+        }
+        (_, TypeInner::Image { dim, arrayed, class }) => {
+            let kind = match class {
+                ImageClass::Storage { format: _, access: _ } => BindingKind::StorageTexture,
+                ImageClass::Sampled { kind: _, multi: _ }
+                | ImageClass::Depth { multi: _ }
+                | ImageClass::External => BindingKind::Texture,
+            };
+            let name = match dim {
+                ImageDimension::D1 => "1d",
+                ImageDimension::D2 => "2d",
+                ImageDimension::D3 => "3d",
+                ImageDimension::Cube => "cube",
+            };
+            let array = if *arrayed { "_array" } else { "" };
+            (Some(kind), Some(format!("{name}{array}")))
+        }
+        _ => (None, None),
+    }
+}
+
+fn array_count(size: ArraySize) -> u32 {
+    match size {
+        ArraySize::Constant(count) => count.get(),
+        ArraySize::Pending(_) | ArraySize::Dynamic => 0,
+    }
+}
+
+fn read_type(module: &Module, ty: Handle<Type>, levels: usize) -> Result<ReadType, String> {
+    let levels = levels.checked_sub(1).ok_or("its types are nested too deep")?;
+    match &module.types[ty].inner {
+        TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => number(*scalar, None, None),
+        TypeInner::Vector { size, scalar } => number(*scalar, Some(*size), None),
+        TypeInner::Matrix { columns, rows, scalar } => number(*scalar, Some(*rows), Some(*columns)),
+        TypeInner::Array { base, size, stride } => Ok(ReadType::Array {
+            element: Box::new(read_type(module, *base, levels)?),
+            count: array_count(*size),
+            stride: Some(*stride),
+        }),
+        TypeInner::Struct { members, span } => {
+            let member = |member: &naga::StructMember| {
+                let naga::StructMember { name: _, ty, binding: _, offset } = member;
+                let ty = read_type(module, *ty, levels)?;
+                Ok(ReadMember { offset: Some(*offset), ty })
+            };
+            let members = members.iter().map(member).collect::<Result<_, String>>()?;
+            Ok(ReadType::Struct { members, size: Some(*span) })
+        }
+        other => Err(format!("a buffer holds {other:?}")),
+    }
+}
+
+/// WGSL's table of alignments: a column of three takes the room of four.
+fn number(
+    scalar: Scalar,
+    rows: Option<VectorSize>,
+    columns: Option<VectorSize>,
+) -> Result<ReadType, String> {
+    let Scalar { kind, width } = scalar;
+    let letter = match kind {
+        ScalarKind::Float => "f",
+        ScalarKind::Sint => "i",
+        ScalarKind::Uint => "u",
+        ScalarKind::Bool | ScalarKind::AbstractInt | ScalarKind::AbstractFloat => {
+            return Err(format!("a buffer holds {kind:?}"));
+        }
+    };
+    let width = u32::from(width);
+    let room = rows.map_or(1, |rows| (rows as u32).next_power_of_two());
+    Ok(ReadType::Number {
+        scalar: format!("{letter}{}", width * 8),
+        width,
+        rows: rows.map(|rows| rows as u32),
+        columns: columns.map(|columns| (columns as u32, Some(width * room))),
+    })
+}
