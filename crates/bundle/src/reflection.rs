@@ -101,7 +101,8 @@ pub struct Binding {
     /// How many bindings an array of them has; 0 if the host decides it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<u32>,
-    /// The size of a buffer, without the elements of a runtime-sized array at its end.
+    /// The size of a buffer. A runtime-sized array at its end counts as one element, as in WebGPU's
+    /// smallest size of a binding.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<u32>,
     /// Whether the shader writes to it, or declares a buffer as `read_write`.

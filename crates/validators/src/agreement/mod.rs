@@ -10,10 +10,10 @@
 //! | `hlsl` | `hlsl.rs`, with Microsoft's packing rules of constant buffers |
 //! | `msl` | `msl.rs` for names and slots; clang for offsets, strides and sizes, by assertions |
 //!
-//! Layouts are read without the code that writes outputs and reflections. Why isn't naga's front end
-//! for SPIR-V used? It needs a graph library, and refuses some of what naga writes, such as
-//! arrays of bindings. Why isn't glslang asked about HLSL? It lays constant buffers out in another
-//! way than Direct3D: `hlsl_packing.rs` says how.
+//! Layouts are read without the code that writes outputs and reflections. naga's front end for SPIR-V
+//! is not used: it would check types as naga's writer does, and it needs a graph library, while a
+//! reading needs the decorations alone. glslang is not asked about HLSL, since it lays constant
+//! buffers out in another way than Direct3D: `hlsl_packing.rs` says how.
 //!
 //! What a language does not say is not compared: the size of a workgroup in MSL, a stage in HLSL and
 //! GLSL, the padding behind a structure in SPIR-V and GLSL, and storage buffers in HLSL, whose
