@@ -257,7 +257,8 @@ impl Draft {
             true => format!("layout(set = 0, binding = {binding}) uniform {block} {{\n"),
             false => format!("struct {block} {{\n"),
         };
-        let lines: Vec<String> = members.iter().map(|member| self.member(member)).collect();
+        let lines: Vec<String> =
+            members.iter().map(|member| self.attributes() + &self.member(member)).collect();
         let end = match self.spelling.is_glsl() {
             true => format!("}} {name};\n"),
             false => {
@@ -269,6 +270,19 @@ impl Draft {
             let path = format!("{name}.{}", member.name);
             let (root, ty) = (name.clone(), member.ty);
             self.values.push(Value { root, path, ty, is_mutable: false, when: None });
+        }
+    }
+
+    /// What moves a member of a block, or those behind it.
+    fn attributes(&mut self) -> String {
+        let aligned = *self.random.pick(&[16, 32, 64]);
+        match (self.random.below(8), self.spelling.is_glsl()) {
+            (0, false) => format!("@align({aligned}) "),
+            // No type of a block has more bytes.
+            (1, false) => format!("@size({}) ", 64 + aligned),
+            (2, false) => format!("@size({}) @align({aligned}) ", 64 + aligned),
+            (0 | 1, true) => format!("layout(align = {aligned}) "),
+            _ => String::new(),
         }
     }
 

@@ -6,6 +6,7 @@ use naga::{Expression, SampleLevel};
 
 use super::invariants;
 use super::lacks::{self, has_since};
+use super::padding;
 use super::plain::{self, Needs};
 use super::reflect::place_of;
 use super::remainder;
@@ -31,6 +32,18 @@ pub fn write_glsl(
     if let Some(reason) = lacks::first_lack(source.module, version) {
         return Err(reason);
     }
+    let padded = padding::with_padding(source.module, source.info)?;
+    let (module, info) =
+        padded.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
+    write_padded(&EmitSource { module, info, ..*source }, version, numbering)
+}
+
+/// Writes GLSL of a module whose structures have no gaps.
+fn write_padded(
+    source: &EmitSource<'_>,
+    version: Version,
+    numbering: Numbering,
+) -> Result<Emitted, String> {
     let plainer = invariants::without_invariant_inputs(source.module, source.stage);
     let source = &EmitSource { module: plainer.as_ref().unwrap_or(source.module), ..*source };
     let plain = plain::with_plain_forms(source.module, source.info, first_needs(version))?;

@@ -27,26 +27,19 @@ pub fn wide_arrays(module: &Module, target: Target) -> Vec<Span> {
     if variables.peek().is_none() || layouter.update(module.to_ctx()).is_err() {
         return Vec::new();
     }
-    let is_wide = |ty| has_wide(module, &layouter, ty, target == Target::WGSL);
+    let is_wide = |ty| has_wide(module, &layouter, ty);
     let wide = variables.filter(|(_, one)| is_wide(one.ty));
     wide.map(|(handle, _)| module.global_variables.get_span(handle)).collect()
 }
 
-/// Whether a type has an array that is too wide. With `offsets`, also whether a member of a
-/// structure lies elsewhere than its type alone says, which Metal's writer fills up.
-fn has_wide(module: &Module, layouter: &Layouter, ty: Handle<Type>, offsets: bool) -> bool {
+/// Whether a type has an array that is too wide.
+fn has_wide(module: &Module, layouter: &Layouter, ty: Handle<Type>) -> bool {
     match &module.types[ty].inner {
         TypeInner::Array { base, size: _, stride } => {
-            layouter[*base].to_stride() != *stride || has_wide(module, layouter, *base, offsets)
+            layouter[*base].to_stride() != *stride || has_wide(module, layouter, *base)
         }
         TypeInner::Struct { members, span: _ } => {
-            let mut end = 0;
-            members.iter().any(|member| {
-                let natural = layouter[member.ty].alignment.round_up(end);
-                end = member.offset + layouter[member.ty].size;
-                offsets && natural != member.offset
-                    || has_wide(module, layouter, member.ty, offsets)
-            })
+            members.iter().any(|member| has_wide(module, layouter, member.ty))
         }
         _ => false,
     }

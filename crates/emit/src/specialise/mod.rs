@@ -18,6 +18,7 @@ use std::collections::BTreeSet;
 use naga::back::wgsl::{WriterFlags, write_string};
 use naga::{Expression, Handle, Literal, Module, Override, Scalar, ScalarKind, TypeInner};
 
+use super::sized::with_sizes;
 use super::{EmitSource, Emitted, Overrides, TargetEntry, targets};
 use lamplight_bundle::{OverrideChoice, Target};
 use lamplight_compose::Composed;
@@ -192,6 +193,7 @@ fn opened_module(
     }
     let text = write_string(&named, source.info, WriterFlags::empty())
         .map_err(|error| error.to_string())?;
+    let text = with_sizes(text, &named)?;
     let text: Vec<String> = text.lines().map(declared_variable).collect();
     let mut module =
         naga::front::wgsl::parse_str(&text.join("\n")).map_err(|error| error.to_string())?;

@@ -8,8 +8,8 @@ use naga::back::wgsl::{Writer, WriterFlags};
 use crate::slots::{Numbering, native_reflection};
 use crate::text::BoundedText;
 use crate::{
-    EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, extensions, filters, specialise,
-    unused,
+    EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, extensions, filters, sized,
+    specialise, unused,
 };
 use lamplight_bundle::{OverrideChoice, Target};
 
@@ -46,6 +46,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         Some(_) => specialise::with_expressions(&text, source.module, &names)?,
         None => text,
     };
+    let text = sized::with_sizes(text, module)?;
     let text = filters::with_filters(&text, source.module)?;
     let text = unused::without_unused_bindings(text, source);
     let text = extensions::with_extensions(text, source.module);

@@ -1,7 +1,8 @@
 //! The types of a module in SPIR-V, laid out by their decorations.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use lamplight_emit::padding::PADDING;
 use lamplight_emit::spirv::{op, string};
 
 use super::reading::{MOST_LEVELS, ReadMember, ReadType};
@@ -30,6 +31,8 @@ pub struct SpirvTypes<'w> {
     decorations: BTreeMap<u32, Vec<&'w [u32]>>,
     /// The same of members, by structure and index.
     members: BTreeMap<(u32, u32), Vec<&'w [u32]>>,
+    /// Members that fill gaps.
+    padding: BTreeSet<(u32, u32)>,
 }
 
 /// The operand of a decoration, or 0 if it has none.
@@ -43,6 +46,9 @@ impl<'w> SpirvTypes<'w> {
     pub fn see(&mut self, op: u16, words: &'w [u32]) {
         match (op, words) {
             (op::NAME, [_, id, name @ ..]) => _ = self.names.insert(*id, string(name)),
+            (op::MEMBER_NAME, [_, id, member, name @ ..]) if string(name).starts_with(PADDING) => {
+                self.padding.insert((*id, *member));
+            }
             (op::DECORATE, [_, id, decoration @ ..]) => {
                 self.decorations.entry(*id).or_default().push(decoration);
             }
@@ -150,14 +156,14 @@ impl<'w> SpirvTypes<'w> {
                 Ok(ReadType::Array { element, count, stride })
             }
             (op::TYPE_STRUCT, types) => {
-                let member = |(index, member): (usize, &u32)| {
-                    let place = (ty, u32::try_from(index).map_err(|error| error.to_string())?);
+                let places = (0..).map(|index| (ty, index));
+                let own = places.zip(types).filter(|(place, _)| !self.padding.contains(place));
+                let member = |(place, member): ((u32, u32), &u32)| {
                     let offset = find_decoration(self.members.get(&place), OFFSET);
                     let offset = Some(offset.ok_or("a member of a block has no offset")?);
                     Ok(ReadMember { offset, ty: self.read_at(*member, Some(place), levels)? })
                 };
-                let members = types.iter().enumerate().map(member);
-                let members = members.collect::<Result<_, String>>()?;
+                let members = own.map(member).collect::<Result<_, String>>()?;
                 Ok(ReadType::Struct { members, size: None })
             }
             _ => {
