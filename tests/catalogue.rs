@@ -214,6 +214,10 @@ fn preset_mistakes_are_reported() -> Result<(), Failed> {
             "data-syntax",
         ),
         (
+            "program = \"forward\"\nkey = \"default\"\nscene = \"floor\"\nsafe_light = { range = 1 }",
+            "data-syntax",
+        ),
+        (
             "program = \"forward\"\nkey = \"default\"\nscene = \"floor\"\nopen = [\"lights.color\"]",
             "data-syntax",
         ),
@@ -250,7 +254,9 @@ fn preset_numbers_name_fields() -> Result<(), Failed> {
         })
         .collect();
     let mut wrong = Vec::new();
-    for preset in presets()? {
+    let presets = presets()?;
+    let safe = presets.iter().filter_map(preset::Preset::safe_form);
+    for preset in presets.iter().cloned().chain(safe) {
         for (group, fields) in &preset.numbers {
             let Some(known) = structs.get(group) else { continue };
             wrong.extend(

@@ -31,7 +31,9 @@ A pixel agrees if each channel is within 1 % of the model, or of a hundredth of 
 
 The last columns say how far the safe form of the library is from the printed one, as the display shows
 both: the share of the pixels that differ by more than 1 % of white, and the largest difference of a
-channel. `lamplight render PRESET --beside` draws both and their difference.
+channel. Lamps of Newcastle's listings fade to nothing at a radius, those of the safe form as light does:
+they have 4.5 times the colour there, with which the ground below them is about as bright. `lamplight render
+PRESET --beside` draws both and their difference.
 
 | listing | section | numbers | agree | undefined | deviations | safe form: pixels | largest |
 |---|---|---|---|---|---|---|---|

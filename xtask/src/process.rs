@@ -66,8 +66,10 @@ pub fn not_run(name: &str, error: &std::io::Error) -> CommandFailure {
 
 /// The command `lamplight`, built now in the profile of this program.
 pub fn beside_this() -> Result<PathBuf, CommandFailure> {
-    let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+    let own = std::env::current_exe().map_err(|error| not_run("lamplight", &error))?;
+    // The folder is named after the profile, but for that of `dev`.
+    let folder = own.parent().and_then(Path::file_name).and_then(|name| name.to_str());
+    let profile = folder.map_or("dev", |name| if name == "debug" { "dev" } else { name });
     cargo(&["build", "--quiet", "--package", "lamplight", "--profile", profile], &[])?;
-    let program = std::env::current_exe().map_err(|error| not_run("lamplight", &error))?;
-    Ok(program.with_file_name("lamplight"))
+    Ok(own.with_file_name("lamplight"))
 }

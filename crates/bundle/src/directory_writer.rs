@@ -385,8 +385,8 @@ fn survey_foreign_files(path: &Path, scratch: &Scratch, has_blobs: bool) -> Resu
     Err(Error::Foreign(Foreign::file(path, found)))
 }
 
-/// Removes blobs that a killed run moved and that neither the manifest nor the index names. `left` is the scratch folder
-/// that this run left.
+/// Removes blobs that a killed run moved and that neither the manifest nor the index names. `left` is
+/// the scratch folder that this run left.
 fn remove_unfinished(left: &Path, blobs: &Path, known: [&BTreeSet<String>; 2]) {
     let Ok(Some(text)) = read_own(&left.join(MANIFEST)) else { return };
     let Before::Whole(files) = manifest::kind_of_manifest(&text) else { return };

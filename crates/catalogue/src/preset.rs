@@ -196,8 +196,7 @@ struct PresetEntry {
     open: Vec<Spanned<String>>,
     deviations: Vec<String>,
     safe: Option<Spanned<String>>,
-    #[serde(default)]
-    safe_light: NumberGroup,
+    safe_light: Option<Spanned<NumberGroup>>,
 }
 
 #[derive(Deserialize)]
@@ -289,7 +288,7 @@ impl Checker<'_> {
             open: entry.open.into_iter().map(Spanned::into_inner).collect(),
             deviations: entry.deviations,
             safe: entry.safe.map(Spanned::into_inner),
-            safe_light: entry.safe_light,
+            safe_light: entry.safe_light.map(Spanned::into_inner).unwrap_or_default(),
         }
     }
 
@@ -305,6 +304,10 @@ impl Checker<'_> {
         }
         let safe = |key: &Spanned<String>| Spanned::new(key.span(), SAFE.to_owned());
         entry.safe.iter().for_each(|key| self.permutation(&safe(key), key));
+        if let (None, Some(lamps)) = (&entry.safe, &entry.safe_light) {
+            let problem = "`safe_light` is for a preset that has a field `safe`".to_owned();
+            self.problems.push(reader::invalid_data(self.span(lamps), problem));
+        }
     }
 
     /// A number that is open must not be given, and must be in one of the groups.
@@ -357,7 +360,7 @@ impl Checker<'_> {
         self.problems.extend(problems);
     }
 
-    fn span(&self, text: &Spanned<String>) -> Span {
+    fn span<T>(&self, text: &Spanned<T>) -> Span {
         Span::new(self.id, text.span())
     }
 }

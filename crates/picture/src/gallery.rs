@@ -346,7 +346,15 @@ fn write_section(text: &mut String, card: &Card) {
     }
     if let Some(key) = &preset.safe {
         let key = key.replace(',', ", ");
-        let _ = writeln!(text, "- safe form: [{SAFE}](../catalogue/programs.md#{SAFE}): `{key}`");
+        let lamps: String = preset
+            .safe_light
+            .iter()
+            .map(|(field, value)| format!(", `light.{field}` = {value}"))
+            .collect();
+        let _ = writeln!(
+            text,
+            "- safe form: [{SAFE}](../catalogue/programs.md#{SAFE}): `{key}`{lamps}"
+        );
         let _ = writeln!(
             text,
             "- as printed, in the safe form, and the difference: `lamplight render {name} --beside`"
@@ -475,7 +483,12 @@ fn write_article(text: &mut String, card: &Card, first: &Card) {
     if let Some(key) = &preset.safe {
         let page = html_link(&format!("{DOCS}/catalogue/programs.md#{SAFE}"), SAFE);
         let key = escape_markup(&key.replace(',', ", "));
-        let _ = writeln!(text, "<li>safe form: {page}: <code>{key}</code></li>");
+        let lamps: String = preset
+            .safe_light
+            .iter()
+            .map(|(field, value)| format!(", <code>light.{field}</code> = {value}"))
+            .collect();
+        let _ = writeln!(text, "<li>safe form: {page}: <code>{key}</code>{lamps}</li>");
     }
     write_facts(text, card);
     for file in first.files() {

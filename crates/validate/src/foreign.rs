@@ -2,8 +2,8 @@
 
 use lamplight_bundle::Language;
 
-/// A name, and what is written instead of it in WGSL and in GLSL. A text is empty where the language
-/// has the name itself.
+/// A name, and what is written instead of it in WGSL and in GLSL: code, or words with code in
+/// backticks. A text is empty where the language has the name itself.
 type Foreign = (&'static str, &'static str, &'static str);
 
 /// Sorted by name. Types of HLSL that end in a number are in [`sized`].
@@ -21,7 +21,7 @@ const FOREIGN: &[Foreign] = &[
     ("ddy", "dpdy(x)", "dFdy(x)"),
     ("dFdx", "dpdx(x)", ""),
     ("dFdy", "dpdy(x)", ""),
-    ("double", "f32: WGSL has no 64-bit floats", ""),
+    ("double", "`f32`: WGSL has no 64-bit floats", ""),
     ("dpdx", "", "dFdx(x)"),
     ("dpdy", "", "dFdy(x)"),
     ("equal", "a == b", ""),
@@ -48,7 +48,7 @@ const FOREIGN: &[Foreign] = &[
     ("gl_VertexID", "a parameter with `@builtin(vertex_index)`", "gl_VertexIndex"),
     ("gl_VertexIndex", "a parameter with `@builtin(vertex_index)`", ""),
     ("greaterThan", "a > b", ""),
-    ("half", "f16, with `enable f16;`", "float"),
+    ("half", "`f16`, with `enable f16;`", "float"),
     ("i32", "", "int"),
     ("int", "i32", ""),
     ("intBitsToFloat", "bitcast<f32>(x)", ""),
@@ -65,11 +65,11 @@ const FOREIGN: &[Foreign] = &[
     ("notEqual", "a != b", ""),
     ("roundEven", "round(x)", ""),
     ("rsqrt", "inverseSqrt(x)", "inversesqrt(x)"),
-    ("sampler2D", "texture_2d<f32> and a sampler", ""),
-    ("samplerCube", "texture_cube<f32> and a sampler", ""),
+    ("sampler2D", "`texture_2d<f32>` and a `sampler`", ""),
+    ("samplerCube", "`texture_cube<f32>` and a `sampler`", ""),
     ("saturate", "", "clamp(x, 0.0, 1.0)"),
     ("select", "", "condition ? a : b"),
-    ("sincos", "sin(x) and cos(x)", "sin(x) and cos(x)"),
+    ("sincos", "`sin(x)` and `cos(x)`", "`sin(x)` and `cos(x)`"),
     ("tex2D", "textureSample(t, s, uv)", "texture(t, uv)"),
     ("tex2Dlod", "textureSampleLevel(t, s, uv, level)", "textureLod(t, uv, level)"),
     ("texCUBE", "textureSample(t, s, direction)", "texture(t, direction)"),
@@ -91,7 +91,7 @@ const FOREIGN: &[Foreign] = &[
     (
         "varying",
         "a result and a parameter with the same `@location`",
-        "out in the vertex stage, in in the fragment stage",
+        "`out` in the vertex stage, `in` in the fragment stage",
     ),
 ];
 
@@ -107,8 +107,9 @@ pub fn native_text(language: Language, name: &str) -> Option<String> {
 
 /// A vector or a matrix of another language: `float3`, `ivec2`, `half4x4`, `vec3f`.
 fn sized(language: Language, name: &str) -> Option<String> {
-    /// The words before the size, what follows it, and the letter of the component in WGSL and GLSL.
-    const VECTORS: [(&str, &str, &str, &str); 12] = [
+    /// The letters before the size, those behind it, and what stands for the scalar type behind a
+    /// vector of WGSL and before one of GLSL.
+    const TYPES: [(&str, &str, &str, &str); 13] = [
         ("float", "", "f", ""),
         ("half", "", "h", ""),
         ("int", "", "i", "i"),
@@ -121,39 +122,27 @@ fn sized(language: Language, name: &str) -> Option<String> {
         ("vec", "h", "h", ""),
         ("vec", "i", "i", "i"),
         ("vec", "u", "u", "u"),
+        ("mat", "f", "f", ""),
     ];
-    let size_of = |before: &str, after: &str| name.strip_prefix(before)?.strip_suffix(after);
-    let found = VECTORS.iter().find_map(|(before, after, wgsl, glsl)| {
-        match size_of(before, after)?.as_bytes() {
-            [size @ b'2'..=b'4'] => {
-                let size = char::from(*size);
-                Some(match language {
-                    Language::Wesl => format!("vec{size}{wgsl}"),
-                    Language::Glsl => format!("{glsl}vec{size}"),
-                })
-            }
-            [columns @ b'2'..=b'4', b'x', rows @ b'2'..=b'4'] if glsl.is_empty() => {
-                let (columns, rows) = (char::from(*columns), char::from(*rows));
-                Some(match language {
-                    Language::Wesl => format!("mat{columns}x{rows}{wgsl}"),
-                    Language::Glsl if columns == rows => format!("mat{columns}"),
-                    Language::Glsl => format!("mat{columns}x{rows}"),
-                })
-            }
-            _ => None,
+    let size = name.trim_matches(|letter: char| !letter.is_ascii_digit());
+    let (before, after) = name.split_once(size).filter(|_| !size.is_empty())?;
+    let (.., wgsl, glsl) = TYPES.iter().find(|one| (one.0, one.1) == (before, after))?;
+    let is_size = |digit: u8| (b'2'..=b'4').contains(&digit);
+    let text = match (language, size.as_bytes()) {
+        (_, [one]) if !is_size(*one) => return None,
+        (Language::Wesl, [_]) => format!("vec{size}{wgsl}"),
+        (Language::Glsl, [_]) => format!("{glsl}vec{size}"),
+        (_, [one, b'x', other]) if !is_size(*one) || !is_size(*other) || !glsl.is_empty() => {
+            return None;
         }
-    });
-    let matrix = || match size_of("mat", "f")?.as_bytes() {
-        [a @ b'2'..=b'4', b'x', b @ b'2'..=b'4'] if a == b => {
-            Some(format!("mat{}", char::from(*a)))
+        (Language::Wesl, [_, b'x', _]) => format!("mat{size}{wgsl}"),
+        (Language::Glsl, [one, b'x', other]) if one == other => {
+            format!("mat{}", char::from(*one))
         }
-        _ => None,
+        (Language::Glsl, [_, b'x', _]) => format!("mat{size}"),
+        _ => return None,
     };
-    match language {
-        Language::Glsl => found.or_else(matrix),
-        Language::Wesl => found,
-    }
-    .filter(|text| text != name)
+    (text != name).then_some(text)
 }
 
 #[cfg(test)]
@@ -169,13 +158,49 @@ mod tests {
         assert!(FOREIGN.iter().all(|(_, wgsl, glsl)| !wgsl.is_empty() || !glsl.is_empty()));
     }
 
-    /// What WGSL has in the table's place is composed of names that naga knows.
+    /// naga knows every function and every type that the table has for WGSL.
     #[test]
     fn names_of_wgsl_are_known() {
-        for (name, ..) in FOREIGN {
-            let Some(native) = native_text(Language::Wesl, name) else { continue };
-            assert_ne!(native.split('(').next(), Some(*name), "{name}");
+        let code = FOREIGN.iter().map(|(_, wgsl, _)| *wgsl).filter(|text| !text.contains('`'));
+        for native in code.filter(|text| !text.is_empty() && !text.starts_with("if ")) {
+            let is_type = native.chars().all(|letter| letter.is_ascii_alphanumeric());
+            let text = match is_type {
+                true => format!("alias T = {native};"),
+                false => format!(
+                    "@group(0) @binding(0) var t: texture_2d<f32>;
+                     @group(0) @binding(1) var s: sampler;
+                     @group(0) @binding(2) var c: texture_cube<f32>;
+                     fn f(a: f32, b: f32, t_: f32, x: f32, y: f32, level: f32, uv: vec2f) {{
+                         let texel = vec2u(uv);
+                         let ddx = uv; let ddy = uv;
+                         let value = {};
+                     }}",
+                    arguments_of(native)
+                ),
+            };
+            let read = naga::front::wgsl::parse_str(&text);
+            assert!(read.is_ok(), "{native}: {}", read.unwrap_err().emit_to_string(&text));
         }
+    }
+
+    /// The code with arguments of the types that its function takes.
+    fn arguments_of(native: &str) -> String {
+        let integers = native.replace("(x)", "(u32(x))");
+        match native {
+            text if text.ends_with("direction)") => "textureSample(c, s, vec3f(x))".to_owned(),
+            text if text.starts_with("unpack") || text.starts_with("count") => integers,
+            "mix(a, b, t)" => "mix(a, b, t_)".to_owned(),
+            "faceForward(n, i, ng)" => "faceForward(vec3f(a), vec3f(b), vec3f(x))".to_owned(),
+            "fma(a, b, c)" => "fma(a, b, x)".to_owned(),
+            "textureLoad(t, texel, level)" | "textureDimensions(t, level)" => {
+                native.replace("level", "u32(level)")
+            }
+            text => text.to_owned(),
+        }
+    }
+
+    #[test]
+    fn types_of_wgsl_are_known() {
         for types in ["float3", "ivec2", "uvec4", "bvec3", "half2", "float4x4", "uint2"] {
             let native = native_text(Language::Wesl, types).unwrap_or_default();
             let text = format!("enable f16; alias T = {native};");
@@ -192,7 +217,12 @@ mod tests {
         assert_eq!(both("vec3f"), [None, Some("vec3".into())]);
         assert_eq!(both("vec2i"), [None, Some("ivec2".into())]);
         assert_eq!(both("mat4x4f"), [None, Some("mat4".into())]);
+        assert_eq!(both("float2x3"), [Some("mat2x3f".into()), Some("mat2x3".into())]);
+        assert_eq!(both("ivec2"), [Some("vec2i".into()), None]);
         assert_eq!(both("float5"), [None, None]);
+        assert_eq!(both("int2x2"), [None, None]);
+        assert_eq!(both("float2x5"), [None, None]);
+        assert_eq!(both("x2"), [None, None]);
         assert_eq!(both("normal"), [None, None]);
     }
 }

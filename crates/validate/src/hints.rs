@@ -7,7 +7,8 @@ use std::ops::Range;
 use lamplight_bundle::Language;
 use lamplight_compose::{Composed, PartKind};
 use lamplight_diagnostic::{Diagnostic, nearest_name};
-use lamplight_syntax::words::leading_word;
+use lamplight_syntax::wesl::blank::without_comments;
+use lamplight_syntax::words::{Lexeme, LexemeKind, is_word, leading_word, pieces, word_around};
 
 use super::foreign::native_text;
 
@@ -154,13 +155,9 @@ pub fn hint_unknown(
     }
 }
 
-/// Code in backticks, and words that have some of their own as they are.
+/// Code in backticks; words that have some of their own as they are.
 fn in_backticks(text: &str) -> String {
-    if text.contains('`') || text.contains(" and ") || text.contains(", with") {
-        text.to_owned()
-    } else {
-        format!("`{text}`")
-    }
+    if text.contains('`') { text.to_owned() } else { format!("`{text}`") }
 }
 
 /// Parameters and local variables that are declared before a place in the function around it.
@@ -176,34 +173,22 @@ const NOT_TYPES: &[&str] = &["return", "else", "case", "do", "in", "out", "inout
 /// In WGSL, names after `let`, `var` and `const`, and those before a colon. In GLSL, names after
 /// another word, which is their type.
 fn declared_locals(language: Language, text: &str) -> BTreeSet<&str> {
-    let mut found = BTreeSet::new();
-    let mut before = "";
-    for line in text.lines().map(|line| line.split("//").next().unwrap_or_default()) {
-        let mut rest = line;
-        while let Some(start) = rest.find(|c: char| c.is_alphabetic() || c == '_') {
-            if !rest[..start].trim().is_empty() {
-                before = "";
+    let bare = without_comments(text);
+    let pieces = pieces(&bare).filter(|piece| piece.kind != LexemeKind::Blank);
+    let pieces: Vec<Lexeme<'_>> = pieces.collect();
+    let declares = |at: usize| {
+        let before = at.checked_sub(1).map_or("", |before| pieces[before].text);
+        let sign = |at: usize| pieces.get(at).map_or("", |piece| piece.text);
+        match language {
+            Language::Wesl => {
+                matches!(before, "let" | "var" | "const")
+                    || sign(at + 1) == ":" && sign(at + 2) != ":"
             }
-            let word = leading_word(&rest[start..]);
-            rest = &rest[start + word.len()..];
-            let is_declared = match language {
-                Language::Wesl => {
-                    matches!(before, "let" | "var" | "const")
-                        || rest.trim_start().starts_with(':')
-                            && !rest.trim_start().starts_with("::")
-                }
-                Language::Glsl => !before.is_empty() && !NOT_TYPES.contains(&before),
-            };
-            if is_declared {
-                found.insert(word);
-            }
-            before = word;
+            Language::Glsl => is_word(before) && !NOT_TYPES.contains(&before),
         }
-        if !rest.trim().is_empty() {
-            before = "";
-        }
-    }
-    found
+    };
+    let words = (0..pieces.len()).filter(|at| pieces[*at].kind == LexemeKind::Word);
+    words.filter(|at| declares(*at)).map(|at| &text[pieces[at].at..pieces[at].end()]).collect()
 }
 
 /// Adds the nearest member of all structures, for a member that there is not.
@@ -212,10 +197,7 @@ pub fn hint_member(error: Diagnostic, composed: &Composed, name: &str) -> Diagno
     let members = structures.flat_map(|part| {
         let text = composed.text.get(part.range.clone()).unwrap_or_default();
         let body = text.split_once('{').map_or("", |(_, body)| body);
-        match composed.language {
-            Language::Wesl => declared_locals(Language::Wesl, body),
-            Language::Glsl => declared_locals(Language::Glsl, body),
-        }
+        declared_locals(composed.language, body)
     });
     match nearest_name(name, members) {
         Some(near) => error.note(format!("help: did you mean `{near}`?")),
@@ -259,17 +241,18 @@ pub fn enclosing_call(before: &str) -> Option<&str> {
         match letter {
             ')' => depth += 1,
             '(' if depth > 0 => depth -= 1,
-            '(' => {
-                let text = before[..at].trim_end();
-                let is_word = |c: char| c == '_' || c.is_alphanumeric();
-                let start = text.rfind(|c| !is_word(c)).map_or(0, |at| at + 1);
-                return (start < text.len()).then(|| &text[start..]);
-            }
+            '(' => return Some(last_word(&before[..at])).filter(|name| !name.is_empty()),
             ';' | '{' | '}' => return None,
             _ => {}
         }
     }
     None
+}
+
+/// The word at the end of a text, but for blanks.
+pub fn last_word(text: &str) -> &str {
+    let text = text.trim_end();
+    &text[word_around(text, text.len()..text.len())]
 }
 
 /// Adds a note with each declaration of a function, for a call whose arguments fit none of them.

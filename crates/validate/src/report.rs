@@ -8,12 +8,14 @@ use naga::front::{glsl, wgsl};
 use naga::valid::ValidationError;
 
 use super::foreign::native_text;
+use super::hints::{enclosing_call, last_word};
 use super::locate::place_of_error;
 use super::{hints, parse_wgsl, uses, words};
 use lamplight_bundle::Language;
 use lamplight_compose::{Composed, Part};
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_syntax::words::is_word;
 
 /// An error of the WGSL parser, with all its labels and notes.
 ///
@@ -84,10 +86,8 @@ fn advised(
     let Some(place) = place else { return diagnostic };
     let before = composed.text.get(..place.start).unwrap_or_default().trim_end();
     if message.starts_with("expected assignment or increment/decrement") {
-        let start = before.rfind(|c: char| c != '_' && !c.is_alphanumeric()).map_or(0, |at| at + 1);
-        let (ty, name) = (&before[start..], composed.text.get(place).unwrap_or_default());
-        let is_type = ty.chars().next().is_some_and(char::is_alphabetic);
-        return match is_type && name.chars().next().is_some_and(char::is_alphabetic) {
+        let (ty, name) = (last_word(before), composed.text.get(place).unwrap_or_default());
+        return match is_word(ty) && is_word(name) {
             true => diagnostic.note(format!(
                 "help: WGSL declares with a keyword: `let {name} = ...;`, or `var {name}: {} = ...;` \
                  if it changes",
@@ -100,7 +100,7 @@ fn advised(
         return diagnostic.note(advice);
     }
     if message.starts_with("automatic conversions cannot convert") {
-        return match hints::enclosing_call(before) {
+        return match enclosing_call(before) {
             Some(name) => hints::note_signatures(diagnostic, composed, name),
             None => diagnostic,
         };
@@ -370,9 +370,10 @@ fn span_kind(context: &str) -> &'static str {
 /// naga's message in our style: it starts in lower case, unless with a name, and quotes the
 /// shader's text in backticks.
 fn as_sentence(message: &str) -> String {
-    let message = message.trim().replace(['"', '\''], "`").replace("{Abstract", "Abstract");
+    let message = message.trim().replace(['"', '\''], "`");
+    // Types that only constants have.
     let message =
-        message.replace("AbstractFloat}", "AbstractFloat").replace("AbstractInt}", "AbstractInt");
+        message.replace("{AbstractFloat}", "AbstractFloat").replace("{AbstractInt}", "AbstractInt");
     // An apostrophe is not a quote.
     let message =
         APOSTROPHES.iter().fold(message, |message, (wrong, right)| message.replace(wrong, right));

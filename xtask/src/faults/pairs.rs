@@ -20,32 +20,51 @@ pub fn run(
     package: &FaultPackage,
     counts: &mut BTreeMap<&'static str, usize>,
 ) -> Result<Vec<String>, CommandFailure> {
-    let mut findings = Vec::new();
-    let mut number = 10_000;
-    let mut killed = |call: &str, occurrence: usize| {
-        number += 1;
-        let inject = format!("inject={call}:signal=KILL:when={occurrence}");
-        package.injected(call, &inject, number)
-    };
-    for first in FIRST {
-        for occurrence in 1..=MOST {
-            for (second, step) in SECOND {
-                for later in (1..=MOST).step_by(step) {
-                    let (one, two) = (killed(first, occurrence)?, killed(second, later)?);
-                    if matches!(one, Injected::No) || matches!(two, Injected::No) {
-                        break;
-                    }
-                    *counts.entry("killed twice").or_default() += 1;
-                    for (run, found) in [("first", one), ("second", two)] {
-                        if let Injected::Wrong(reason) = found {
-                            let place = format!("{first} {occurrence}, then {second} {later}");
-                            findings.push(format!("{place}: after the {run} run: {reason}"));
-                        }
-                    }
+    let mut killer = Killer { package, number: 10_000, findings: Vec::new() };
+    let all = FIRST.iter().flat_map(|first| (1..=MOST).map(move |at| (*first, at)));
+    for first in all {
+        for (second, step) in SECOND {
+            for later in (1..=MOST).step_by(step) {
+                // Neither call is made so often.
+                if !killer.killed(first, "")? || !killer.killed((second, later), &place(first))? {
+                    break;
                 }
+                *counts.entry("killed twice").or_default() += 1;
             }
         }
     }
-    findings.iter().for_each(|finding| println!("{finding}"));
-    Ok(findings)
+    killer.findings.iter().for_each(|finding| println!("{finding}"));
+    Ok(killer.findings)
+}
+
+/// A call, and which of its occurrences.
+type Occurrence<'c> = (&'c str, usize);
+
+fn place((call, occurrence): Occurrence<'_>) -> String {
+    format!("{call} {occurrence}, then ")
+}
+
+/// Kills runs of a package.
+struct Killer<'p> {
+    package: &'p FaultPackage,
+    /// What the next run writes.
+    number: usize,
+    findings: Vec<String>,
+}
+
+impl Killer<'_> {
+    /// Kills a run at a call, and notes what is wrong after it. Returns whether there was such a call.
+    fn killed(&mut self, at: Occurrence<'_>, before: &str) -> Result<bool, CommandFailure> {
+        let (call, occurrence) = at;
+        self.number += 1;
+        let inject = format!("inject={call}:signal=KILL:when={occurrence}");
+        Ok(match self.package.injected(call, &inject, self.number)? {
+            Injected::No => false,
+            Injected::Whole => true,
+            Injected::Wrong(reason) => {
+                self.findings.push(format!("{before}{call} {occurrence}: {reason}"));
+                true
+            }
+        })
+    }
 }

@@ -24,6 +24,7 @@ pub fn between_the_renames() -> Outcome {
     // Runs that end before they write anything.
     for _ in 0..2 {
         drop(DirectoryWriter::create(&bundle)?);
+        check(!bundle.join(SCRATCH).exists(), "the folder is not taken for one of a killed run")?;
         Bundle::open(&bundle)?.verify()?;
         check(blobs(&bundle)? == both, "a run that wrote nothing removed blobs")?;
     }

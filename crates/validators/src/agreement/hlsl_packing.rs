@@ -15,6 +15,10 @@ use super::text::{Statement, member_tokens, number_of};
 
 const REGISTER: u32 = 16;
 
+/// No `cbuffer` has so many. Numbers in a text may be anything.
+const MOST_BYTES: u32 = u32::MAX / 2;
+const TOO_LARGE: &str = "its types are too large";
+
 /// The structures of a text: the members of each.
 pub struct HlslStructs<'t>(BTreeMap<&'t str, Vec<HlslMember<'t>>>);
 
@@ -89,6 +93,9 @@ impl<'t> HlslStructs<'t> {
             let element = self.pack(member, inner, levels)?;
             let stride = element.size.next_multiple_of(REGISTER);
             let size = stride.saturating_mul(count.saturating_sub(1)).saturating_add(element.size);
+            if size > MOST_BYTES {
+                return Err(TOO_LARGE.to_owned());
+            }
             let (element, stride) = (Box::new(element.ty), Some(stride));
             return Ok(Packed {
                 ty: ReadType::Array { element, count: *count, stride },
@@ -115,8 +122,8 @@ impl<'t> HlslStructs<'t> {
                 None => end.next_multiple_of(REGISTER),
             };
             end = offset.saturating_add(packed.size);
-            if end > u32::MAX / 2 {
-                return Err("its types are too large".to_owned());
+            if end > MOST_BYTES {
+                return Err(TOO_LARGE.to_owned());
             }
             if !member.is_padding() {
                 placed.push(ReadMember { offset: Some(offset), ty: packed.ty });
@@ -142,6 +149,9 @@ fn pack_number(member: &HlslMember<'_>) -> Result<Packed, String> {
     let scalar = scalar.to_owned();
     let sizes: Vec<u32> =
         member.ty[word.len()..].split('x').filter_map(|size| size.parse().ok()).collect();
+    if !sizes.iter().all(|size| (1..=4).contains(size)) {
+        return Err(unknown());
+    }
     let packed = |rows, columns, size, unit| Packed {
         ty: ReadType::Number { scalar: scalar.clone(), width, rows, columns },
         size,
@@ -151,7 +161,7 @@ fn pack_number(member: &HlslMember<'_>) -> Result<Packed, String> {
         [] => Ok(packed(None, None, width, Some(width))),
         [rows] => Ok(packed(Some(rows), None, width * rows, Some(width))),
         // What WGSL calls a column, HLSL calls a row here.
-        [columns, rows] if member.is_row_major && columns > 0 => {
+        [columns, rows] if member.is_row_major => {
             let size = (columns - 1) * REGISTER + width * rows;
             Ok(packed(Some(rows), Some((columns, Some(REGISTER))), size, None))
         }
@@ -173,6 +183,39 @@ mod tests {
         (places, layout.size().bytes())
     }
 
+    /// Another compiler's layouts, of which the file has 300.
+    #[test]
+    fn layouts_of_slangc() {
+        const NESTED: &str = "struct A { float3 x; };
+            struct B { float a; float3 b; float c[2]; };
+            struct C { row_major float3x3 m; float t; A n[2]; };";
+        let lines = include_str!("hlsl_packing.txt").lines().filter(|line| !line.starts_with('#'));
+        let mut wrong = Vec::new();
+        for line in lines.clone() {
+            let parts: Vec<&str> = line.split('|').map(str::trim).collect();
+            let [members, offsets, size] = parts[..] else { panic!("{line}") };
+            let text = format!("{NESTED} struct S {{ {members} }};");
+            let structs = HlslStructs::of(&read_statements(&text));
+            let layout = structs.layout(&HlslMember::read(&["S", "s"]).unwrap()).unwrap();
+            let places: Vec<String> = layout
+                .members()
+                .iter()
+                .map(|member| member.offset.unwrap_or_default().to_string())
+                .collect();
+            let found = (places.join(" "), layout.size().bytes().to_string());
+            if found != (offsets.to_owned(), size.to_owned()) {
+                wrong.push(format!("{line}: found {found:?}"));
+            }
+        }
+        assert!(
+            wrong.is_empty(),
+            "{} wrong: {}",
+            wrong.len(),
+            wrong[..wrong.len().min(8)].join("\n")
+        );
+        assert_eq!(lines.count(), 300);
+    }
+
     #[test]
     fn vectors_do_not_cross_registers() {
         assert_eq!(offsets("float3 a; float b;"), (vec![Some(0), Some(12)], 16));
@@ -186,6 +229,17 @@ mod tests {
         assert_eq!(offsets("float a[2]; float b;"), (vec![Some(0), Some(20)], 24));
         assert_eq!(offsets("row_major float3x3 a; float b;"), (vec![Some(0), Some(44)], 48));
         assert_eq!(offsets("float a; In b; float c;"), (vec![Some(0), Some(16), Some(28)], 32));
+    }
+
+    #[test]
+    fn sizes_beyond_all_bounds() {
+        for ty in
+            ["float4294967295", "float0", "row_major float9x4", "float a[4000000000][9] ; int"]
+        {
+            let text = format!("struct S {{ {ty} x; float y; }};");
+            let structs = HlslStructs::of(&read_statements(&text));
+            assert!(structs.layout(&HlslMember::read(&["S", "s"]).unwrap()).is_err(), "{ty}");
+        }
     }
 
     #[test]
