@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* The version of bundles that this reader reads. */
-#define LAMPLIGHT_VERSION 2
+#define LAMPLIGHT_VERSION 3
 
 /* The longest key, in bytes, and the most axes of a program. */
 #define LAMPLIGHT_KEY_BYTES 1024
@@ -72,7 +72,8 @@ typedef struct lamplight {
     size_t size;
     size_t offset[6], length[6];
     lamplight_tree meta, values;
-    uint32_t unit_count, artifact_count, blob_count, group_count;
+    uint32_t unit_count, artifact_count, blob_count, piece_count, group_count;
+    uint32_t piece_room; /* bytes of the largest group that has pieces */
     char error[1024];
     char key[LAMPLIGHT_KEY_BYTES];
 } lamplight;
@@ -95,6 +96,8 @@ typedef struct lamplight_shader {
     uint32_t unit;                     /* equal numbers are equal shaders */
     uint32_t size;                     /* bytes of the output */
     uint32_t group, group_size, offset;
+    uint32_t words;                    /* of its list of pieces; 0 where it is stored whole */
+    size_t work_size;
     uint8_t hash[16];
     char file[64];                     /* in a directory: the name of its file */
 } lamplight_shader;
@@ -500,7 +503,7 @@ static int lamplight__header(lamplight *bundle) {
     if (lamplight__u32(bytes + 8) != LAMPLIGHT_VERSION) {
         snprintf(number, sizeof number, "%lu", (unsigned long)lamplight__u32(bytes + 8));
         return lamplight__fail(bundle, LAMPLIGHT_FORMAT, "the bundle has format version ", number,
-                               ", and this reader reads version 2");
+                               ", and this reader reads version 3");
     }
     if (bundle->size < LAMPLIGHT__HEADER) return lamplight__damaged(bundle, "it is cut off");
     if (!lamplight__matches(bytes, LAMPLIGHT__HEADER - 16, bytes + LAMPLIGHT__HEADER - 16))
@@ -528,13 +531,28 @@ static lamplight_value lamplight__meta(const lamplight *bundle, const char *name
     return lamplight_field(lamplight__root(&bundle->meta, 0), name);
 }
 
+/* The records of a blob, a piece and a group: see `BLOBS` in the description of the format. */
+static const uint8_t *lamplight__blob_record(const lamplight *bundle, uint32_t blob) {
+    return bundle->bytes + bundle->offset[LAMPLIGHT__BLOBS] + (size_t)blob * 32;
+}
+
+static const uint8_t *lamplight__piece(const lamplight *bundle, uint32_t piece) {
+    return lamplight__blob_record(bundle, bundle->blob_count) + (size_t)piece * 16;
+}
+
+static const uint8_t *lamplight__group_record(const lamplight *bundle, uint32_t group) {
+    return lamplight__piece(bundle, bundle->piece_count) + (size_t)group * 32;
+}
+
 int lamplight_open(lamplight *bundle, const void *bytes, size_t size) {
     int code;
+    uint32_t i;
     uint64_t units, blobs;
     bundle->bytes = (const uint8_t *)bytes;
     bundle->size = size;
     bundle->error[0] = 0;
-    bundle->unit_count = bundle->artifact_count = bundle->blob_count = bundle->group_count = 0;
+    bundle->unit_count = bundle->artifact_count = bundle->blob_count = 0;
+    bundle->piece_count = bundle->group_count = bundle->piece_room = 0;
     memset(&bundle->meta, 0, sizeof bundle->meta);
     memset(&bundle->values, 0, sizeof bundle->values);
     code = lamplight__header(bundle);
@@ -547,11 +565,19 @@ int lamplight_open(lamplight *bundle, const void *bytes, size_t size) {
     bundle->unit_count = lamplight__natural(lamplight__meta(bundle, "units"));
     bundle->artifact_count = lamplight__natural(lamplight__meta(bundle, "artifacts"));
     bundle->blob_count = lamplight__natural(lamplight__meta(bundle, "blobs"));
+    bundle->piece_count = lamplight__natural(lamplight__meta(bundle, "pieces"));
     bundle->group_count = lamplight__natural(lamplight__meta(bundle, "groups"));
     units = (uint64_t)bundle->unit_count * 12 + (uint64_t)bundle->artifact_count * 12;
-    blobs = (uint64_t)bundle->blob_count * 28 + (uint64_t)bundle->group_count * 32;
+    blobs = (uint64_t)bundle->blob_count * 32 + (uint64_t)bundle->piece_count * 16 +
+            (uint64_t)bundle->group_count * 32;
     if (units != bundle->length[LAMPLIGHT__UNITS] || blobs != bundle->length[LAMPLIGHT__BLOBS])
         return lamplight__damaged(bundle, "a table has another size");
+    for (i = 0; i < bundle->piece_count; i++) {
+        uint32_t group = lamplight__u32(lamplight__piece(bundle, i)), size = 0;
+        if (group < bundle->group_count)
+            size = lamplight__u32(lamplight__group_record(bundle, group) + 12);
+        if (size > bundle->piece_room && size <= LAMPLIGHT__MOST_BYTES) bundle->piece_room = size;
+    }
     return LAMPLIGHT_OK;
 }
 
@@ -857,15 +883,18 @@ static int lamplight__blob(lamplight *bundle, uint32_t blob, const char *extensi
     static const char digits[] = "0123456789abcdef";
     int ok = 1, i;
     const uint8_t *record;
+    uint32_t stored;
     if (blob >= bundle->blob_count) return lamplight__damaged(bundle, "a blob is out of range");
-    record = bundle->bytes + bundle->offset[LAMPLIGHT__BLOBS] + (size_t)blob * 28;
+    record = lamplight__blob_record(bundle, blob);
     shader->group = lamplight__u32(record);
     shader->offset = lamplight__u32(record + 4);
     shader->size = lamplight__u32(record + 8);
-    memcpy(shader->hash, record + 12, 16);
+    shader->words = lamplight__u32(record + 12);
+    memcpy(shader->hash, record + 16, 16);
     shader->group_size = 0;
+    shader->work_size = 0;
     shader->file[0] = 0;
-    if (shader->size > LAMPLIGHT__MOST_BYTES)
+    if (shader->size > LAMPLIGHT__MOST_BYTES || shader->words > LAMPLIGHT__MOST_BYTES / 4)
         return lamplight__damaged(bundle, "a blob is too large");
     if (shader->group == UINT32_MAX) {
         char name[17];
@@ -884,12 +913,16 @@ static int lamplight__blob(lamplight *bundle, uint32_t blob, const char *extensi
     }
     if (shader->group >= bundle->group_count)
         return lamplight__damaged(bundle, "a group is out of range");
-    record = bundle->bytes + bundle->offset[LAMPLIGHT__BLOBS] + (size_t)bundle->blob_count * 28 +
-             (size_t)shader->group * 32;
-    shader->group_size = lamplight__u32(record + 12);
+    shader->group_size = lamplight__u32(lamplight__group_record(bundle, shader->group) + 12);
+    stored = shader->words ? shader->words * 4 : shader->size;
     if (shader->group_size > LAMPLIGHT__MOST_BYTES || shader->offset > shader->group_size ||
-        shader->size > shader->group_size - shader->offset)
+        stored > shader->group_size - shader->offset)
         return lamplight__damaged(bundle, "a blob is out of range");
+    shader->work_size = shader->group_size;
+    if (shader->words) {
+        if (shader->work_size < bundle->piece_room) shader->work_size = bundle->piece_room;
+        shader->work_size += stored;
+    }
     return LAMPLIGHT_OK;
 }
 
@@ -963,13 +996,13 @@ int lamplight_find(lamplight *bundle, const char *program, const char *entry, co
 
 /* Bytes. */
 
-size_t lamplight_work_size(const lamplight_shader *shader) { return shader->group_size; }
+size_t lamplight_work_size(const lamplight_shader *shader) { return shader->work_size; }
 
-static int lamplight__group(lamplight *bundle, const lamplight_shader *shader, uint8_t *work) {
-    const uint8_t *record = bundle->bytes + bundle->offset[LAMPLIGHT__BLOBS] +
-                            (size_t)bundle->blob_count * 28 + (size_t)shader->group * 32;
+/* Decompresses a group to `work`. */
+static int lamplight__group(lamplight *bundle, uint32_t group, uint8_t *work) {
+    const uint8_t *record = lamplight__group_record(bundle, group);
     uint64_t offset = lamplight__u64(record);
-    uint32_t packed = lamplight__u32(record + 8);
+    uint32_t packed = lamplight__u32(record + 8), size = lamplight__u32(record + 12);
     const uint8_t *data = bundle->bytes + bundle->offset[LAMPLIGHT__DATA];
     size_t length = bundle->length[LAMPLIGHT__DATA];
     if (offset > length || packed > length - offset)
@@ -980,16 +1013,111 @@ static int lamplight__group(lamplight *bundle, const lamplight_shader *shader, u
     if (!bundle->decompress)
         return lamplight__fail(bundle, LAMPLIGHT_READ, "set `decompress`: shaders are compressed",
                                "", "");
-    if (bundle->decompress(bundle->user, work, shader->group_size, data, packed) !=
-        shader->group_size)
+    if (bundle->decompress(bundle->user, work, size, data, packed) != size)
         return lamplight__damaged(bundle, "a group cannot be decompressed");
     return LAMPLIGHT_OK;
+}
+
+static void lamplight__set_u32(uint8_t *at, uint32_t value) {
+    at[0] = (uint8_t)value;
+    at[1] = (uint8_t)(value >> 8);
+    at[2] = (uint8_t)(value >> 16);
+    at[3] = (uint8_t)(value >> 24);
+}
+
+/* Checks a list of pieces, and makes values of the differences in it. */
+static int lamplight__check_list(lamplight *bundle, const lamplight_shader *shader,
+                                 uint8_t *list) {
+    uint32_t at, left, before = 0, size = 0;
+    for (at = 0; at < shader->words;) {
+        uint32_t number = lamplight__u32(list + 4 * (size_t)at++), length;
+        const uint8_t *piece;
+        if (number >= bundle->piece_count)
+            return lamplight__damaged(bundle, "a piece is out of range");
+        piece = lamplight__piece(bundle, number);
+        length = lamplight__u32(piece + 8);
+        if (length == 0 || length > shader->size - size)
+            return lamplight__damaged(bundle, "a shader has other bytes than it should");
+        size += length;
+        left = lamplight__u32(piece + 12);
+        if (left > shader->words - at)
+            return lamplight__damaged(bundle, "a list ends before its values");
+        for (; left > 0; left--, at++) {
+            before += lamplight__u32(list + 4 * (size_t)at);
+            lamplight__set_u32(list + 4 * (size_t)at, before);
+        }
+    }
+    if (size != shader->size)
+        return lamplight__damaged(bundle, "a shader has other bytes than it should");
+    return LAMPLIGHT_OK;
+}
+
+/* Writes a piece from its decompressed group, and fills its holes. Returns 0 where it is damaged. */
+static int lamplight__place(const uint8_t *piece, const uint8_t *group, uint32_t group_size,
+                             const uint8_t *list, uint8_t *out) {
+    uint32_t offset = lamplight__u32(piece + 4), length = lamplight__u32(piece + 8);
+    uint32_t values = lamplight__u32(piece + 12), holes = values ? (length / 4 + 7) / 8 : 0, i;
+    if (offset > group_size || length > group_size - offset) return 0;
+    if (holes > group_size - offset - length) return 0;
+    memcpy(out, group + offset, length);
+    for (i = 0; values && i < length / 4; i++) {
+        uint32_t index = lamplight__u32(out + 4 * (size_t)i);
+        if (!(group[offset + length + i / 8] >> i % 8 & 1)) continue;
+        if (index >= values) return 0;
+        memcpy(out + 4 * (size_t)i, list + 4 * (size_t)index, 4);
+    }
+    return 1;
+}
+
+/* Joins the pieces of a checked list, group by group, so that each is decompressed once. */
+static int lamplight__join(lamplight *bundle, const lamplight_shader *shader, const uint8_t *list,
+                           uint8_t *work, uint8_t *out) {
+    uint32_t group = UINT32_MAX, size = 0;
+    int code;
+    for (;;) {
+        uint32_t at = 0, next = UINT32_MAX;
+        size_t end = 0;
+        while (at < shader->words) {
+            const uint8_t *piece =
+                lamplight__piece(bundle, lamplight__u32(list + 4 * (size_t)at++));
+            uint32_t found = lamplight__u32(piece);
+            if (found == group &&
+                !lamplight__place(piece, work, size, list + 4 * (size_t)at, out + end))
+                return lamplight__damaged(bundle, "a piece is out of range");
+            if ((group == UINT32_MAX || found > group) && found < next) next = found;
+            at += lamplight__u32(piece + 12);
+            end += lamplight__u32(piece + 8);
+        }
+        if (next == UINT32_MAX) return LAMPLIGHT_OK;
+        group = next;
+        if (group < bundle->group_count)
+            size = lamplight__u32(lamplight__group_record(bundle, group) + 12);
+        if (group >= bundle->group_count || size > bundle->piece_room)
+            return lamplight__damaged(bundle, "a group is out of range");
+        code = lamplight__group(bundle, group, work);
+        if (code) return code;
+    }
+}
+
+/* Decompresses a shader that is in a group. */
+static int lamplight__unpack(lamplight *bundle, const lamplight_shader *shader, uint8_t *out,
+                             uint8_t *work) {
+    uint8_t *list = work, *group = work + (size_t)shader->words * 4;
+    int code = lamplight__group(bundle, shader->group, group);
+    if (code) return code;
+    if (!shader->words) {
+        memcpy(out, group + shader->offset, shader->size);
+        return LAMPLIGHT_OK;
+    }
+    memcpy(list, group + shader->offset, (size_t)shader->words * 4);
+    code = lamplight__check_list(bundle, shader, list);
+    return code ? code : lamplight__join(bundle, shader, list, group, out);
 }
 
 int lamplight_read(lamplight *bundle, const lamplight_shader *shader, void *out, size_t out_size,
                    void *work, size_t work_size) {
     int code;
-    if (out_size < shader->size || work_size < shader->group_size)
+    if (out_size < shader->size || work_size < shader->work_size)
         return lamplight__fail(bundle, LAMPLIGHT_ROOM, "a buffer is too small for the shader", "",
                                "");
     if (shader->file[0]) {
@@ -1000,9 +1128,8 @@ int lamplight_read(lamplight *bundle, const lamplight_shader *shader, void *out,
             return lamplight__fail(bundle, LAMPLIGHT_READ, "`", shader->file,
                                    "` was not read, or is shorter than it was");
     } else {
-        code = lamplight__group(bundle, shader, (uint8_t *)work);
+        code = lamplight__unpack(bundle, shader, (uint8_t *)out, (uint8_t *)work);
         if (code) return code;
-        memcpy(out, (const uint8_t *)work + shader->offset, shader->size);
     }
     if (!lamplight__matches((const uint8_t *)out, shader->size, shader->hash))
         return lamplight__damaged(bundle, "the checksum of a shader does not match");

@@ -75,7 +75,7 @@ const LEFTOVERS: [&str; 10] =
     [".new", ".orig", ".rej", ".bak", ".tmp", ".log", ".swp", ".profraw", ".spv", "~"];
 
 /// Files that may be binary: pictures, tables, and inputs that are wrong on purpose.
-const BINARIES: [&str; 15] = [
+const BINARIES: [&str; 16] = [
     ".png",
     ".lamplight",
     "shaderlib/tables/blue_noise.bin",
@@ -87,6 +87,7 @@ const BINARIES: [&str; 15] = [
     "shaderlib/tables/sheen.bin",
     "shaderlib/tables/sheen.ktx2",
     "tests/bundles/good/index.bin",
+    ".spv.txt",
     "tests/regressions/bundle/valid",
     "tests/regressions/picture/valid",
     "tests/regressions/record/diagnostics",

@@ -2,6 +2,7 @@
 //! compressed groups where a shader is asked for.
 
 mod bytes;
+mod outputs;
 mod verify;
 
 use std::borrow::Cow;
@@ -24,7 +25,7 @@ use lamplight_files::limits::MANIFEST_BYTES;
 
 /// How many decompressed groups are kept, and how many bytes: about what the shaders of one level
 /// of a game need.
-const KEPT_GROUPS: usize = 16;
+const KEPT_GROUPS: usize = 64;
 const KEPT_BYTES: usize = 32 << 20;
 
 /// The most bytes of a section that is read as a whole.
@@ -290,7 +291,9 @@ impl Packed {
     /// Of a group: offset in DATA, length there, length decompressed, checksum.
     fn group_record(&self, group: u32) -> Result<(usize, usize, usize, Hash), Error> {
         let table = self.section(BLOBS)?;
-        let at = self.meta.blobs as usize * BLOB_BYTES + group as usize * GROUP_BYTES;
+        let before =
+            self.meta.blobs as usize * BLOB_BYTES + self.meta.pieces as usize * PIECE_BYTES;
+        let at = before + group as usize * GROUP_BYTES;
         let raw = u32_at(table, at + 12, "blobs")? as usize;
         let packed = u32_at(table, at + 8, "blobs")? as usize;
         // Compressing makes nothing twice as large, but for some bytes around it.
@@ -379,20 +382,11 @@ impl Store for Packed {
     }
 
     fn blob(&self, blob: u32) -> Result<Vec<u8>, Error> {
-        if blob >= self.meta.blobs {
-            return Err(Error::corrupt("blobs", "a number is out of range"));
-        }
-        let table = self.section(BLOBS)?;
-        let at = blob as usize * BLOB_BYTES;
-        let (offset, length) =
-            (u32_at(table, at + 4, "blobs")? as usize, u32_at(table, at + 8, "blobs")? as usize);
-        let group = self.group(u32_at(table, at, "blobs")?)?;
-        slice_at(&group, offset, length, "blobs").map(<[u8]>::to_vec)
+        self.output(&self.blob_record(blob)?)
     }
 
     fn digest(&self, blob: u32) -> Result<String, Error> {
-        let table = self.section(BLOBS)?;
-        hash_at(table, blob as usize * BLOB_BYTES + 12, "blobs").map(|hash| to_hex(&hash))
+        self.blob_record(blob).map(|record| to_hex(&record.sum))
     }
 
     fn measure(&self) -> Result<(), Error> {

@@ -9,7 +9,8 @@
 //!           constants, the number of a value, or NONE, for each key
 //! UNITS     per unit: reflection, first artifact, artifact count; per artifact: target, native, blob
 //! VALUES    a tree: reflections, natives, lists of constants
-//! BLOBS     per blob: group, offset, length, checksum; per group: offset, lengths, checksum
+//! BLOBS     per blob: group, offset, length, words of its list, checksum; per piece: group, offset,
+//!           length, values; per group: offset, lengths, checksum
 //! DATA      groups, zstd, without gaps
 //! ```
 //! [`super::tree`] says what a tree is. Integers are little-endian, of 32 bits unless said otherwise;
@@ -40,7 +41,8 @@ pub const UNIT_BYTES: usize = 12;
 pub const ARTIFACT_BYTES: usize = 12;
 pub const RECORD_BYTES: usize = 8;
 pub const SLOT_BYTES: usize = 16;
-pub const BLOB_BYTES: usize = 28;
+pub const BLOB_BYTES: usize = 32;
+pub const PIECE_BYTES: usize = 16;
 pub const GROUP_BYTES: usize = 32;
 
 /// The most bytes of a group before compression. It bounds what a damaged length can allocate.
@@ -59,6 +61,7 @@ pub struct Meta {
     pub artifacts: u32,
     pub values: u32,
     pub blobs: u32,
+    pub pieces: u32,
     pub groups: u32,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<ShardOrigin>,

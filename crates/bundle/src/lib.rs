@@ -26,6 +26,7 @@ mod packing;
 #[cfg(not(feature = "single-file"))]
 #[path = "packing/absent.rs"]
 mod packing;
+mod pieces;
 mod program_layout;
 mod reflection;
 mod reload;
@@ -66,4 +67,4 @@ pub use usage::usage_lines;
 
 /// Version of both forms. It changes only when an older reader would misread a bundle: members of
 /// records may be added without a new version.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;

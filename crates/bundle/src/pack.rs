@@ -10,10 +10,11 @@ use serde_json::Value;
 
 use super::contents::{checksum, to_json};
 use super::layout::{
-    EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, NONE, PROBES, ProgramMeta,
-    RECORD_BYTES, SLOT_BYTES, TargetMeta, hash_key,
+    EntryMeta, GROUP_BYTES as GROUP_RECORD_BYTES, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES,
+    Meta, NONE, PROBES, ProgramMeta, RECORD_BYTES, SLOT_BYTES, TargetMeta, hash_key,
 };
 use super::manifest::{FileStub, Manifest};
+use super::pieces::{List, Piece, PieceTable};
 use super::program_layout::{EntryKeys, program_layout};
 use super::tree::TreeBuilder;
 use super::{Constant, Contents, EntryContents, Error, Hash, Unit, VERSION};
@@ -21,9 +22,8 @@ use crate::packing;
 use lamplight_files::input;
 use lamplight_files::output::{self, Foreign, Replace};
 
-/// A group is closed when it has this many blobs or bytes. That is large enough for similar shaders
-/// to share their common text, and small enough to be decompressed within a millisecond.
-const GROUP_BLOBS: usize = 32;
+/// A group is closed when it has this many bytes. That is large enough for neighbours to share what
+/// they have in common, and small enough to be decompressed within a millisecond.
 const GROUP_BYTES: usize = 256 << 10;
 
 /// Writes the single-file form. The same contents always give the same bytes.
@@ -117,6 +117,21 @@ enum BlobPlace {
     Files,
 }
 
+/// An output on its way into the file.
+struct Blob {
+    length: u32,
+    sum: Hash,
+    body: Body,
+}
+
+/// What a group has of a blob.
+enum Body {
+    /// Nothing: it is in a file.
+    File,
+    Whole(Arc<[u8]>),
+    Pieces(List),
+}
+
 #[derive(Default)]
 struct Packer {
     place: BlobPlace,
@@ -127,7 +142,8 @@ struct Packer {
     artifacts: Vec<u8>,
     values: TreeBuilder,
     value_numbers: BTreeMap<Vec<u8>, u32>,
-    blobs: Vec<Arc<[u8]>>,
+    blobs: Vec<Blob>,
+    pieces: PieceTable,
     blob_numbers: BTreeMap<Hash, u32>,
 }
 
@@ -144,11 +160,11 @@ impl Packer {
             .collect();
         targets.sort();
         targets.dedup();
-        for target in &targets {
+        for (index, target) in (0..).zip(&targets) {
             let units = contents.entries().flat_map(in_key_order);
             for artifact in units.filter_map(|unit| unit.targets.get(&target.name)) {
                 if artifact.extension == target.extension {
-                    self.add_blob(&artifact.bytes)?;
+                    self.add_blob(&artifact.bytes, index)?;
                 }
             }
         }
@@ -156,18 +172,30 @@ impl Packer {
         Ok(())
     }
 
-    fn add_blob(&mut self, bytes: &Arc<[u8]>) -> Result<(), Error> {
+    fn add_blob(&mut self, bytes: &Arc<[u8]>, target: u32) -> Result<(), Error> {
         if bytes.len() > MOST_GROUP_BYTES {
             return Err(Error::Io(format!(
                 "a blob of {} bytes is larger than a bundle takes",
                 bytes.len()
             )));
         }
-        let hash = self.blob_hash(bytes);
+        let sum = self.blob_hash(bytes);
         let next = to_u32(self.blobs.len())?;
-        if *self.blob_numbers.entry(hash).or_insert(next) == next {
-            self.blobs.push(bytes.clone());
+        if *self.blob_numbers.entry(sum).or_insert(next) != next {
+            return Ok(());
         }
+        let blob = match self.place {
+            BlobPlace::Files => {
+                let FileStub { hash: _, length } = FileStub::read(bytes);
+                Blob { length, sum, body: Body::File }
+            }
+            BlobPlace::Data => {
+                let list = self.pieces.split(bytes, target).map_err(|_| outgrown())?;
+                let body = list.map_or_else(|| Body::Whole(bytes.clone()), Body::Pieces);
+                Blob { length: to_u32(bytes.len())?, sum, body }
+            }
+        };
+        self.blobs.push(blob);
         Ok(())
     }
 
@@ -285,7 +313,6 @@ impl Packer {
     fn finish(mut self) -> Result<Vec<u8>, Error> {
         let (blobs, data) = self.groups()?;
         self.meta.values = to_u32(self.value_numbers.len())?;
-        self.meta.blobs = to_u32(self.blobs.len())?;
         self.units.append(&mut self.artifacts);
         let mut meta = TreeBuilder::default();
         meta.add(&to_value(&self.meta)?)?;
@@ -294,36 +321,90 @@ impl Packer {
 
     /// Builds the BLOBS and DATA sections.
     fn groups(&mut self) -> Result<(Vec<u8>, Vec<u8>), Error> {
-        let (mut table, mut groups, mut data) = (Vec::new(), Vec::new(), Vec::new());
-        if self.place == BlobPlace::Files {
-            for blob in &self.blobs {
-                let FileStub { hash, length } = FileStub::read(blob);
-                push_words(&mut table, &[NONE, 0, length]);
-                table.extend_from_slice(&hash);
-            }
-            return Ok((table, data));
+        let (pieces, renumbering) = std::mem::take(&mut self.pieces).finish();
+        self.meta.blobs = to_u32(self.blobs.len())?;
+        self.meta.pieces = to_u32(pieces.len())?;
+        let (mut table, mut groups) = (Vec::new(), Groups::default());
+        for blob in std::mem::take(&mut self.blobs) {
+            let Blob { length, sum, body } = blob;
+            let ([group, offset], words) = match body {
+                Body::File => ([NONE, 0], 0),
+                Body::Whole(bytes) => (groups.add(Kind::Whole, &bytes)?, 0),
+                Body::Pieces(mut list) => {
+                    renumbering.apply(&mut list);
+                    let mut bytes = Vec::with_capacity(4 * list.len());
+                    push_words(&mut bytes, &list);
+                    (groups.add(Kind::Lists, &bytes)?, to_u32(list.len())?)
+                }
+            };
+            push_words(&mut table, &[group, offset, length, words]);
+            table.extend_from_slice(&sum);
         }
-        let mut raw = Vec::new();
-        let mut members = 0;
-        for (index, blob) in self.blobs.iter().enumerate() {
-            push_words(&mut table, &[self.meta.groups, to_u32(raw.len())?, to_u32(blob.len())?]);
-            table.extend_from_slice(&checksum(blob));
-            raw.extend_from_slice(blob);
-            members += 1;
-            let next = self.blobs.get(index + 1).map_or(usize::MAX, |blob| blob.len());
-            if members == GROUP_BLOBS || raw.len().saturating_add(next) > GROUP_BYTES {
-                let packed = packing::compress(&raw)?;
-                groups.extend_from_slice(&(data.len() as u64).to_le_bytes());
-                push_words(&mut groups, &[to_u32(packed.len())?, to_u32(raw.len())?]);
-                groups.extend_from_slice(&checksum(&packed));
-                data.extend_from_slice(&packed);
-                raw.clear();
-                members = 0;
-                self.meta.groups += 1;
-            }
+        for Piece { bytes, length, values } in pieces {
+            let [group, offset] = groups.add(Kind::Pieces, &bytes)?;
+            push_words(&mut table, &[group, offset, length, values]);
         }
-        table.append(&mut groups);
+        let (mut records, data) = groups.finish()?;
+        self.meta.groups = to_u32(records.len() / GROUP_RECORD_BYTES)?;
+        table.append(&mut records);
         Ok((table, data))
+    }
+}
+
+/// What a group has. Each has one kind, since what is alike compresses well together.
+#[derive(Default, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    #[default]
+    Whole,
+    Lists,
+    Pieces,
+}
+
+/// Collects the bytes of groups, and compresses each when it is full.
+#[derive(Default)]
+struct Groups {
+    kind: Kind,
+    /// Whether something was added since the last group was closed, be it nothing but empty blobs.
+    is_open: bool,
+    raw: Vec<u8>,
+    /// The groups that are complete.
+    count: u32,
+    records: Vec<u8>,
+    data: Vec<u8>,
+}
+
+impl Groups {
+    /// The group of some bytes, and where they are in it.
+    fn add(&mut self, kind: Kind, bytes: &[u8]) -> Result<[u32; 2], Error> {
+        let is_full = !self.raw.is_empty() && self.raw.len() + bytes.len() > GROUP_BYTES;
+        if self.is_open && (is_full || kind != self.kind) {
+            self.close()?;
+        }
+        self.kind = kind;
+        let place = [self.count, to_u32(self.raw.len())?];
+        self.raw.extend_from_slice(bytes);
+        self.is_open = true;
+        Ok(place)
+    }
+
+    fn close(&mut self) -> Result<(), Error> {
+        let packed = packing::compress(&self.raw)?;
+        self.records.extend_from_slice(&(self.data.len() as u64).to_le_bytes());
+        push_words(&mut self.records, &[to_u32(packed.len())?, to_u32(self.raw.len())?]);
+        self.records.extend_from_slice(&checksum(&packed));
+        self.data.extend_from_slice(&packed);
+        self.raw.clear();
+        self.is_open = false;
+        self.count += 1;
+        Ok(())
+    }
+
+    /// The records of all groups, and DATA.
+    fn finish(mut self) -> Result<(Vec<u8>, Vec<u8>), Error> {
+        if self.is_open {
+            self.close()?;
+        }
+        Ok((self.records, self.data))
     }
 }
 
@@ -382,5 +463,9 @@ fn push_words(bytes: &mut Vec<u8>, words: &[u32]) {
 }
 
 fn to_u32(value: usize) -> Result<u32, Error> {
-    u32::try_from(value).map_err(|_| Error::Io("a table of the bundle outgrows 32 bits".to_owned()))
+    u32::try_from(value).map_err(|_| outgrown())
+}
+
+fn outgrown() -> Error {
+    Error::Io("a table of the bundle outgrows 32 bits".to_owned())
 }

@@ -239,20 +239,8 @@ fn padded_module(module: &Module, info: &ModuleInfo, types: PaddedTypes) -> Resu
         pad_function(function, module, &info[handle], &types);
     }
     for (index, point) in entry_points.iter_mut().enumerate() {
-        let EntryPoint {
-            name: _,
-            stage: _,
-            early_depth_test: _,
-            workgroup_size: _,
-            workgroup_size_overrides,
-            function,
-            mesh_info: _,
-            task_payload: _,
-            incoming_ray_payload: _,
-        } = point;
-        let sizes = workgroup_size_overrides.iter_mut().flatten().flatten();
-        sizes.for_each(|size| *size = moved[size.index()]);
-        pad_function(function, module, info.get_entry_point(index), &types);
+        let sizes = pad_entry_point(point, module, info.get_entry_point(index), &types);
+        sizes.iter_mut().flatten().flatten().for_each(|size| *size = moved[size.index()]);
     }
     Ok(Module {
         special_types: moved_special(special_types, &types),
@@ -267,6 +255,29 @@ fn padded_module(module: &Module, info: &ModuleInfo, types: PaddedTypes) -> Resu
         diagnostic_filter_leaf,
         doc_comments: None,
     })
+}
+
+/// Gives an entry point the types with padding. Returns the sizes of its workgroup, which name
+/// constant expressions.
+fn pad_entry_point<'p>(
+    point: &'p mut EntryPoint,
+    module: &Module,
+    info: &FunctionInfo,
+    types: &PaddedTypes,
+) -> &'p mut Option<[Option<Handle<Expression>>; 3]> {
+    let EntryPoint {
+        name: _,
+        stage: _,
+        early_depth_test: _,
+        workgroup_size: _,
+        workgroup_size_overrides,
+        function,
+        mesh_info: _,
+        task_payload: _,
+        incoming_ray_payload: _,
+    } = point;
+    pad_function(function, module, info, types);
+    workgroup_size_overrides
 }
 
 fn moved_special(special: SpecialTypes, types: &PaddedTypes) -> SpecialTypes {

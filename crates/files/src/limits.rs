@@ -221,7 +221,7 @@ limits! {
         "memory: a few compressed bytes may expand to many", "the bundle is damaged";
     BUNDLE_BYTES: u64 = 256 << 20, Bytes, "bytes of one part of a bundle, decompressed",
         "memory, time", "the bundle is damaged";
-    BUNDLE_FACTOR: u64 = 128, Count, "further such bytes for each byte of its file", "memory, time",
+    BUNDLE_FACTOR: u64 = 512, Count, "further such bytes for each byte of its file", "memory, time",
         "the bundle is damaged";
     BUNDLE_VALUES: u32 = 1 << 22, Count, "values in one reflection of a bundle, or in its list of programs",
         "memory, time: equal ones are stored once", "the bundle is damaged";

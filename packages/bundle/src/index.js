@@ -6,7 +6,7 @@ import { Tree } from "./tree.js";
 import { unzstd } from "./zstd.js";
 
 /** The version of bundles that this reader reads. */
-export const VERSION = 2;
+export const VERSION = 3;
 
 const HEADER = 24 + 6 * 32 + 16;
 const [META, KEYS, UNITS, VALUES, BLOBS, DATA] = [0, 1, 2, 3, 4, 5];
@@ -16,7 +16,7 @@ const NONE = 0xffff_ffff;
 const MOST_GROUP = 16 << 20;
 
 /** How many decompressed groups are kept. */
-const KEPT_GROUPS = 16;
+const KEPT_GROUPS = 64;
 
 /** How many bytes are asked for first: all tables of most bundles. */
 const FIRST_BYTES = 1 << 18;
@@ -99,10 +99,10 @@ export class Bundle {
     this.views = this.parts.map(viewOf);
     this.meta = new Tree(this.parts[META], "meta", damaged).root(0);
     this.values = new Tree(this.parts[VALUES], "values", damaged);
-    const { units, artifacts, blobs, groups, programs, targets } = this.meta ?? {};
+    const { units, artifacts, blobs, pieces, groups, programs, targets } = this.meta ?? {};
     const isWhole = programs && Array.isArray(targets) &&
       (units + artifacts) * 12 === this.parts[UNITS].length &&
-      blobs * 28 + groups * 32 === this.parts[BLOBS].length;
+      (blobs + groups) * 32 + pieces * 16 === this.parts[BLOBS].length;
     if (!isWhole) damaged("a table has another size");
     this.groups = new Map();
   }
@@ -218,19 +218,25 @@ export class Bundle {
   blob(blob, extension) {
     const { blobs, groups } = this.meta;
     if (blob >= blobs) damaged("a blob is out of range");
-    const [group, offset, size] = [0, 4, 8].map((at) => this.word(BLOBS, blob * 28 + at));
-    const hash = this.parts[BLOBS].subarray(blob * 28 + 12, blob * 28 + 28);
+    const [group, offset, size, words] = this.record(blob * 32);
+    const hash = this.parts[BLOBS].subarray(blob * 32 + 16, blob * 32 + 32);
     if (group === NONE) {
       const digits = [...hash.subarray(0, 8)].map((byte) => byte.toString(16).padStart(2, "0"));
       if (!/^[a-z0-9]+(\.[a-z0-9]+)*$/i.test(extension)) damaged("a file has no proper extension");
       return { file: `blobs/${digits.join("")}.${extension}`, offset, size, hash };
     }
     if (group >= groups) damaged("a group is out of range");
-    return { group, offset, size, hash };
+    return { group, offset, size, words, hash };
+  }
+
+  /** The four words of a record in BLOBS. */
+  record(at) {
+    return [0, 4, 8, 12].map((word) => this.word(BLOBS, at + word));
   }
 
   async readGroup(group) {
-    const at = this.meta.blobs * 28 + group * 32, { at: start, length } = this.sections[DATA];
+    const { blobs, pieces } = this.meta, { at: start, length } = this.sections[DATA];
+    const at = (blobs + group) * 32 + pieces * 16;
     const offset = long(this.views[BLOBS], at);
     const [packed, size] = [this.word(BLOBS, at + 8), this.word(BLOBS, at + 12)];
     if (offset + packed > length || size > MOST_GROUP) damaged("a group is out of range");
@@ -255,13 +261,55 @@ export class Bundle {
     return read;
   }
 
-  async readBlob({ group, file, offset, size, hash }) {
-    const whole = file ? await this.source.file(file) : await this.group(group);
-    const bytes = file ? whole : whole.subarray(offset, offset + size);
+  async readBlob(blob) {
+    const { file, group, offset, size, words, hash } = blob;
+    let bytes = file ? await this.source.file(file) : await this.group(group);
+    if (words) bytes = await this.join(bytes.slice(offset, offset + words * 4), blob);
+    else if (!file) bytes = bytes.subarray(offset, offset + size);
     if (bytes.length !== size || !matches(bytes, hash)) {
       damaged("the checksum of a shader does not match");
     }
     return bytes;
+  }
+
+  /** The bytes of an output that is a list of pieces. Each has values for the holes of its piece. */
+  async join(list, { size, words }) {
+    const view = viewOf(list), parts = [];
+    if (list.length !== words * 4 || size > MOST_GROUP) damaged("a blob is out of range");
+    let [end, before] = [0, 0];
+    for (let at = 0; at < words;) {
+      const piece = view.getUint32(4 * at++, true);
+      if (piece >= this.meta.pieces) damaged("a piece is out of range");
+      const [group, offset, length, count] = this.record(this.meta.blobs * 32 + piece * 16);
+      const isOut = group >= this.meta.groups || length === 0 || length > size - end;
+      if (isOut || count > words - at) damaged("a piece is out of range");
+      const values = Array.from({ length: count }, () => {
+        before = (before + view.getUint32(4 * at++, true)) >>> 0;
+        return before;
+      });
+      parts.push({ group, offset, length, values, end });
+      end += length;
+    }
+    if (end !== size) damaged("a shader has other bytes than it should");
+    const numbers = [...new Set(parts.map(({ group }) => group))];
+    const groups = new Map(
+      await Promise.all(numbers.map(async (number) => [number, await this.group(number)])),
+    );
+    const bytes = new Uint8Array(size);
+    for (const part of parts) place(bytes, groups.get(part.group), part);
+    return bytes;
+  }
+}
+
+/** Copies a piece, and fills its holes. A bit behind it says for each of its words if it is one. */
+function place(bytes, group, { offset, length, values, end }) {
+  const piece = group.subarray(offset, offset + length), view = viewOf(bytes);
+  if (piece.length !== length) damaged("a piece is out of range");
+  bytes.set(piece, end);
+  for (let word = 0; values.length > 0 && word < length >> 2; word++) {
+    if (!((group[offset + length + (word >> 3)] >> (word & 7)) & 1)) continue;
+    const value = values[view.getUint32(end + 4 * word, true)];
+    view.setUint32(end + 4 * word, value ?? damaged("a piece is out of range"), true);
   }
 }
 

@@ -32,11 +32,9 @@ impl Packed {
         self.verify_sections()?;
         self.within_budget()?;
         self.verify_tables()?;
-        let table = self.section(BLOBS)?;
         for blob in 0..self.meta.blobs {
-            if checksum(&self.blob(blob)?)
-                != hash_at(table, blob as usize * BLOB_BYTES + 12, "blobs")?
-            {
+            let record = self.blob_record(blob)?;
+            if checksum(&self.output(&record)?) != record.sum {
                 return Err(Error::corrupt(format!("blob {blob}"), "the checksum does not match"));
             }
         }
@@ -120,28 +118,31 @@ impl Packed {
         Ok(())
     }
 
-    /// The length of each blob. Blobs must follow each other through the groups, and none may
-    /// overlap another.
+    /// The length of each blob. Blobs and then pieces must follow each other through the groups, and
+    /// none may overlap another.
     fn blob_lengths(&self) -> Result<Vec<usize>, Error> {
-        let table = self.section(BLOBS)?;
-        let (mut lengths, mut group, mut next) = (Vec::new(), 0, 0);
-        for blob in 0..self.meta.blobs as usize {
-            let at = blob * BLOB_BYTES;
-            let (found, offset, length) = (
-                u32_at(table, at, "blobs")?,
-                u32_at(table, at + 4, "blobs")? as usize,
-                u32_at(table, at + 8, "blobs")? as usize,
-            );
+        let mut lengths = Vec::new();
+        let (mut group, mut next) = (0, 0);
+        let mut follow = |found: u32, offset: usize, stored: usize, part: &str, index: u32| {
             if found != group {
                 self.ends(group, next)?;
                 (group, next) = (group + 1, 0);
             }
             if found != group || offset != next {
                 let reason = "it is not where the one before ends";
-                return Err(Error::corrupt(format!("blob {blob}"), reason));
+                return Err(Error::corrupt(format!("{part} {index}"), reason));
             }
-            next += length;
-            lengths.push(length);
+            next += stored;
+            Ok(())
+        };
+        for blob in 0..self.meta.blobs {
+            let record = self.blob_record(blob)?;
+            follow(record.group, record.offset, record.stored(), "blob", blob)?;
+            lengths.push(record.length);
+        }
+        for piece in 0..self.meta.pieces {
+            let record = self.piece_record(piece)?;
+            follow(record.group, record.offset, record.stored(), "piece", piece)?;
         }
         if self.meta.groups > 0 {
             self.ends(group, next)?;

@@ -20,7 +20,7 @@ pub fn copies(good: &[u8]) -> Result<Vec<(String, Vec<u8>)>, Failed> {
         let (offset, length) = section(good, index)?;
         copies.push((format!("flipped_{name}"), flipped(good, offset + length / 2)));
     }
-    for (name, version) in [("older", 1), ("newer", 3)] {
+    for (name, version) in [("older", 2), ("newer", 4)] {
         let mut other = good.to_vec();
         other[8] = version;
         copies.push((name.to_owned(), other));
@@ -30,6 +30,17 @@ pub fn copies(good: &[u8]) -> Result<Vec<(String, Vec<u8>)>, Failed> {
     copies.push(("crafted_cycle".to_owned(), with_cycle(good)?));
     copies.push(("crafted_unit".to_owned(), with_units(good)?));
     copies.push(("crafted_group".to_owned(), with_groups(good)?));
+    let pieces = [
+        ("group", 0, u32::MAX),
+        ("offset", 1, 0xffff_fff0),
+        ("empty", 2, 0),
+        ("length", 2, 0xffff_fff0),
+        ("values", 3, 0xffff_fff0),
+        ("holes", 3, 1),
+    ];
+    for (name, index, value) in pieces {
+        copies.push((format!("crafted_piece_{name}"), with_pieces(good, index, value)?));
+    }
     Ok(copies)
 }
 
@@ -89,9 +100,37 @@ fn with_units(good: &[u8]) -> Result<Vec<u8>, Failed> {
 /// Each blob says that it starts near the end of its group.
 fn with_groups(good: &[u8]) -> Result<Vec<u8>, Failed> {
     let mut bytes = good.to_vec();
-    let (offset, length) = section(good, 4)?;
-    for blob in 0..(length - 32) / 28 {
-        bytes[offset + blob * 28 + 4..][..4].copy_from_slice(&0xffff_fff0_u32.to_le_bytes());
+    let (offset, _) = section(good, 4)?;
+    for blob in 0..count(good, "blobs")? {
+        bytes[offset + blob * 32 + 4..][..4].copy_from_slice(&0xffff_fff0_u32.to_le_bytes());
     }
     sealed(bytes)
+}
+
+/// One word of each piece is another number.
+fn with_pieces(good: &[u8], index: usize, value: u32) -> Result<Vec<u8>, Failed> {
+    let mut bytes = good.to_vec();
+    let (offset, _) = section(good, 4)?;
+    let pieces = offset + count(good, "blobs")? * 32;
+    for piece in 0..count(good, "pieces")? {
+        bytes[pieces + piece * 16 + index * 4..][..4].copy_from_slice(&value.to_le_bytes());
+    }
+    sealed(bytes)
+}
+
+/// A number in the record that META is.
+fn count(bytes: &[u8], name: &str) -> Result<usize, Failed> {
+    let (at, _) = section(bytes, 0)?;
+    let (roots, texts, words) = (word(bytes, at)?, word(bytes, at + 4)?, word(bytes, at + 8)?);
+    let texts_at = at + 16 + roots * 4;
+    let words_at = texts_at + texts * 8;
+    let record = words_at + (word(bytes, at + 16)? >> 3) * 4;
+    for member in 0..word(bytes, record)? {
+        let text = texts_at + word(bytes, record + 4 + member * 8)? * 8;
+        let (start, length) = (word(bytes, text)?, word(bytes, text + 4)?);
+        if bytes[words_at + words * 4 + start..][..length] == *name.as_bytes() {
+            return Ok(word(bytes, record + 8 + member * 8)? >> 3);
+        }
+    }
+    Err(format!("META has no `{name}`").into())
 }

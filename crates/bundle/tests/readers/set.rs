@@ -194,7 +194,10 @@ fn unit(name: &str, reflection: Reflection, targets: &[&str]) -> Unit {
     let artifact = |target: &&str| {
         let extension = if *target == "spirv" { "spv.txt" } else { "txt" };
         let artifact = Artifact {
-            bytes: shader_text(name, target).into_bytes().into(),
+            bytes: match *target {
+                "spirv" => module(name).into(),
+                _ => shader_text(name, target).into_bytes().into(),
+            },
             extension: extension.to_owned(),
             native: Arc::new(native(&reflection, target)),
         };
@@ -211,6 +214,32 @@ fn shader_text(name: &str, target: &str) -> String {
         format!("let value_{line} = {name}_{target}(input.position * {number}.0);\n")
     });
     format!("// {name} for {target}\n") + &lines.collect::<String>()
+}
+
+/// A module of SPIR-V as far as a bundle reads it: a type, constants and functions, whose ids depend
+/// on the name.
+fn module(name: &str) -> Vec<u8> {
+    let first = name.bytes().fold(0, |sum, byte| (sum * 31 + u32::from(byte)) % 4096);
+    let [float, ty] = [first, first + 1];
+    let mut words = vec![0x0723_0203, 0x0001_0000, 28, first + 1000, 0];
+    let mut add = |op: u32, operands: &[u32]| {
+        words.push((operands.len() as u32 + 1) << 16 | op);
+        words.extend_from_slice(operands);
+    };
+    add(22, &[float, 32]);
+    add(33, &[ty, float]);
+    (0..20).for_each(|number| {
+        add(43, &[float, first + 2 + number, number.wrapping_mul(2_654_435_761)])
+    });
+    for function in 0..name.len() as u32 {
+        let id = first + 100 + 20 * function;
+        add(54, &[float, id, 0, ty]);
+        add(248, &[id + 1]);
+        (0..8).for_each(|step| add(129, &[float, id + 2 + step, id + 1 + step, first + 2 + step]));
+        add(254, &[id + 9]);
+        add(56, &[]);
+    }
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
 fn native(reflection: &Reflection, target: &str) -> Native {
