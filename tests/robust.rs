@@ -269,10 +269,14 @@ fn versions() -> Outcome {
     package.generate()?;
     let manifest = package.bundle().join("manifest.json");
     let text = std::fs::read_to_string(&manifest)?;
-    std::fs::write(&manifest, text.replacen("\"version\": 2", "\"version\": 99", 1))?;
+    std::fs::write(&manifest, text.replacen("\"version\": 3", "\"version\": 99", 1))?;
+    let index = package.bundle().join("index.bin");
+    let mut bytes = std::fs::read(&index)?;
+    bytes[8] = 99;
+    std::fs::write(&index, bytes)?;
     fails(&inspect("list", &package.bundle())?, 1, "version 99")?;
     // The next run would lose what a newer version wrote, so it needs `--force`.
-    fails(&package.command(&package.bundle()).output()?, 1, "newer than version 2")?;
+    fails(&package.command(&package.bundle()).output()?, 1, "newer than version 3")?;
     let forced = package.command(&package.bundle()).arg("--force").output()?;
     if !forced.status.success() {
         return Err(code_and_stderr(&forced).into());

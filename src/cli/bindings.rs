@@ -50,7 +50,7 @@ pub fn run_bindings(arguments: &Arguments) -> Result<(), Failure> {
     let failed = |error: bundle::Error| Failure::input(format!("`{}`: {error}", path.display()));
     let opened = Bundle::open(path).map_err(failed)?;
     let bytes = match arguments.embed {
-        true => Some(opened.contents().and_then(|all| bundle::pack(&all)).map_err(failed)?),
+        true => Some(opened.pack().map_err(failed)?),
         false => None,
     };
     let name = embedded_name(path);

@@ -86,8 +86,7 @@ pub fn run_bundle(arguments: Arguments) -> Result<(), Failure> {
             let opened = open_bundle(&bundle)?;
             let wrong = |error| Failure::input(format!("`{}`: {error}", bundle.display()));
             opened.verify().map_err(wrong)?;
-            let contents = opened.contents().map_err(wrong)?;
-            bundle::replace_file(&contents, &out, overwrite.replace())
+            bundle::replace_packed(&opened, &out, overwrite.replace())
                 .map_err(|error| write_failure(&out, error))
         }
         Command::Diff { old, new, json } => {
@@ -104,7 +103,10 @@ fn open_bundle(path: &PathBuf) -> Result<Bundle, Failure> {
 /// blobs are kept for only one more run.
 fn verify_bundle(path: &PathBuf) -> Result<(), Failure> {
     const MOST_LOOKS: u32 = 16;
-    let state = || input::read_file(&path.join("manifest.json"), MANIFEST_BYTES).ok();
+    let state = || {
+        ["index.bin", "manifest.json"]
+            .map(|name| input::read_file(&path.join(name), MANIFEST_BYTES).ok())
+    };
     for look in 1.. {
         let before = state();
         match open_bundle(path)?.verify() {

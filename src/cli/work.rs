@@ -298,7 +298,8 @@ pub fn is_file(path: &Path) -> bool {
 }
 
 fn compare_with_last(contents: &Contents, out: &Path) -> Result<(), Failure> {
-    let there = Bundle::open(out).and_then(|bundle| bundle.contents());
+    let there = Bundle::open(out).and_then(|bundle| bundle.verify().map(|()| bundle));
+    let there = there.and_then(|bundle| bundle.contents());
     let there = there.map_err(|error| Failure::check(format!("`{}`: {error}", out.display())))?;
     let difference = bundle::diff(&there, contents);
     if difference.is_empty() {

@@ -16,10 +16,11 @@ use crate::regressions::kinds::seal;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 8] = [
+    let cases: [Case; 9] = [
         ("bundle_that_is_no_file", no_file),
         ("bundle_with_a_pipe_for_a_blob", pipe_for_a_blob),
         ("bundle_of_overlapping_blobs", overlapping),
+        ("bundle_of_one_piece", many_of_one_piece),
         ("bundle_that_is_mended", mended),
         ("bundle_with_names_for_a_terminal", names),
         ("cache_with_swapped_records", swapped),
@@ -152,34 +153,62 @@ fn blobs(packed: &[u8]) -> Result<usize, Failed> {
     Ok(u64::from_le_bytes(bytes.ok_or("no header")?) as usize)
 }
 
-/// Each record of a blob points into one large compressed blob, each at another offset. A reader
-/// that extracted every blob would need much memory for a small file.
+/// Each record of a blob has the list of one large blob. A reader that extracted every blob would
+/// need much memory for a small file.
 fn overlapping() -> Outcome {
     const LARGE: usize = 1 << 20;
     let folder = package()?;
     let good = Bundle::open(folder.path().join("good.lamplight"))?;
-    let zeros = vec![0; LARGE + 512];
-    let mut packed = pack(&with_artifact(good.contents()?, zeros.clone())?)?;
+    let mut packed = pack(&with_artifact(good.contents()?, vec![0; LARGE])?)?;
     let (table, count) = (blobs(&packed)?, PERMUTATIONS);
     let length = |record: &[u8]| u32::from_le_bytes([record[8], record[9], record[10], record[11]]);
     let records: Vec<Vec<u8>> =
-        packed[table..].chunks(28).take(count).map(<[u8]>::to_vec).collect();
-    let large = records.iter().find(|record| length(record) as usize == zeros.len());
+        packed[table..].chunks(32).take(count).map(<[u8]>::to_vec).collect();
+    let large = records.iter().find(|record| length(record) as usize == LARGE);
     let large = large.ok_or("no large blob")?.clone();
-    let start = u32::from_le_bytes([large[4], large[5], large[6], large[7]]);
     for number in 0..count {
-        let place = &mut packed[table + number * 28..table + (number + 1) * 28];
-        place[..4].copy_from_slice(&large[..4]);
-        place[4..8].copy_from_slice(&(start + number as u32).to_le_bytes());
-        place[8..12].copy_from_slice(&(LARGE as u32).to_le_bytes());
-        place[12..28].copy_from_slice(&blake3::hash(&zeros[..LARGE]).as_bytes()[..16]);
+        packed[table + number * 32..table + (number + 1) * 32].copy_from_slice(&large);
     }
-    let packed = seal::bundle(&packed);
+    write_small(&folder, &seal::bundle(&packed))?;
+    refused(&folder, "is damaged")
+}
+
+/// Outputs that have one piece hundreds of times: six hundred megabytes in a small file. They are
+/// checked one at a time, and refused where all would be in memory together.
+fn many_of_one_piece() -> Outcome {
+    let folder = package()?;
+    let good = Bundle::open(folder.path().join("good.lamplight"))?;
+    let mut contents = good.contents()?;
+    let line = format!("//{};\n", " ".repeat(4000));
+    for entry in contents.entries_mut() {
+        for (number, (key, hash)) in std::mem::take(&mut entry.keys).into_iter().enumerate() {
+            let mut unit = entry.units.remove(&hash).ok_or("no unit")?;
+            for artifact in unit.targets.values_mut() {
+                artifact.bytes = (line.repeat(500) + &format!("//{number}\n")).into_bytes().into();
+            }
+            let hash = entry.add(unit)?;
+            entry.keys.insert(key, hash);
+        }
+    }
+    let packed = pack(&contents)?;
+    drop(contents);
+    write_small(&folder, &packed)?;
+    for arguments in READERS {
+        let output = run_within(LITTLE_KIB, &folder, arguments)?;
+        match arguments[..2] {
+            ["bundle", "diff"] => fails(&output, 1, "512 times the bytes of the file")?,
+            ["merge", _] => fails(&output, 3, "disagree about permutation")?,
+            _ => fails(&output, 0, "")?,
+        }
+    }
+    Ok(())
+}
+
+fn write_small(folder: &TempDir, packed: &[u8]) -> Outcome {
     if packed.len() > 100_000 {
         return Err(format!("the file should be small, it has {} bytes", packed.len()).into());
     }
-    fs::write(folder.path().join("b.lamplight"), packed)?;
-    refused(&folder, "is damaged")
+    Ok(fs::write(folder.path().join("b.lamplight"), packed)?)
 }
 
 /// A blob has a wrong checksum, but the checksums of the tables above it are right.
@@ -187,7 +216,7 @@ fn mended() -> Outcome {
     let folder = package()?;
     let mut packed = fs::read(folder.path().join("good.lamplight"))?;
     let table = blobs(&packed)?;
-    packed[table + 12] ^= 1;
+    packed[table + 16] ^= 1;
     fs::write(folder.path().join("b.lamplight"), seal::bundle(&packed))?;
     refused(&folder, "checksum")
 }

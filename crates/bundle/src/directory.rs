@@ -1,15 +1,20 @@
-//! The directory form: `manifest.json` and `blobs/`.
+//! The directory form: `index.bin`, `manifest.json` and `blobs/`.
+//!
+//! Readers open the index, which has the tables of the single file. The manifest says the same to
+//! people, and to programs that write bundles.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use super::contents::{checksum, from_hex, refuse_control_characters, to_hex};
+use super::contents::{checksum, from_hex, to_hex};
+use super::file::{self, Packed};
 use super::layout::MOST_GROUP_BYTES;
-use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit, blob_file_name};
-use super::pack::pack_index;
-use super::store::{self, Store, StoredArtifact, StoredProgram, StoredPrograms};
-use super::{Axis, Error, Hash, Native, Reflection, ShardOrigin, Stage, file};
+use super::manifest::{self, Manifest, blob_file_name};
+use super::pack::{pack_index, pack_outputs};
+use super::store::{Store, StoredArtifact, StoredPrograms, StoredUnit};
+use super::{Error, Hash, Native, Reflection, ShardOrigin, Stage};
 use lamplight_files::input;
 
 pub(super) const MANIFEST: &str = "manifest.json";
@@ -20,22 +25,12 @@ pub(super) const BLOBS: &str = "blobs";
 /// The most bytes of a manifest: forty times what 100,000 permutations need.
 pub(super) const MOST_MANIFEST_BYTES: u64 = lamplight_files::limits::MANIFEST_BYTES;
 
-/// Artifacts by target, each with the index of its blob.
-type NumberedArtifacts = BTreeMap<String, (ManifestArtifact, u32)>;
-
-/// An open directory; blobs are read when asked for.
+/// An open directory. Its tables are read when they are needed, and a blob when it is asked for.
 pub struct Directory {
     path: PathBuf,
-    blobs: PathBuf,
-    programs: StoredPrograms,
-    shard: Option<ShardOrigin>,
-    /// For each entry point, the unit of each key.
-    keys: Vec<BTreeMap<String, u32>>,
-    units: Vec<(Arc<Reflection>, NumberedArtifacts)>,
-    natives: BTreeMap<String, Arc<Native>>,
-    /// The blobs, each distinct one once.
-    artifacts: Vec<ManifestArtifact>,
-    numbers: BTreeMap<ManifestArtifact, u32>,
+    index: Packed,
+    /// Of each blob, the target that it is for, which says how its file ends.
+    targets: OnceLock<Result<Vec<u32>, Error>>,
 }
 
 /// The manifest of a directory.
@@ -47,56 +42,19 @@ pub(super) fn read_manifest(path: &Path) -> Result<Manifest, Error> {
     )
 }
 
-/// Reads the manifest.
+/// Opens the index.
 pub fn open(path: &Path) -> Result<Directory, Error> {
-    let manifest = read_manifest(path)?;
-    let mut directory = Directory {
-        path: path.to_owned(),
-        blobs: path.join(BLOBS),
-        programs: StoredPrograms::new(),
-        shard: manifest.shard,
-        keys: Vec::new(),
-        units: Vec::new(),
-        natives: manifest
-            .natives
-            .into_iter()
-            .map(|(name, native)| (name, Arc::new(native)))
-            .collect(),
-        artifacts: Vec::new(),
-        numbers: BTreeMap::new(),
-    };
-    let reflections: BTreeMap<_, _> = manifest
-        .reflections
-        .into_iter()
-        .map(|(name, reflection)| (name, Arc::new(reflection)))
-        .collect();
-    let mut numbers = BTreeMap::new();
-    for (name, unit) in manifest.units {
-        numbers.insert(name, directory.units.len() as u32);
-        directory.add_unit(unit, &reflections)?;
-    }
-    for (name, program) in manifest.programs {
-        let entries = program.entries.values().flat_map(BTreeMap::keys);
-        refuse_control_characters(MANIFEST, std::iter::once(&name).chain(entries))?;
-        refuse_control_characters(MANIFEST, program.axes.iter().flat_map(Axis::names))?;
-        let mut index = StoredProgram {
-            axes: program.axes,
-            layouts: program.layouts,
-            ..StoredProgram::default()
-        };
-        for (language, entries) in program.entries {
-            for (entry, contents) in entries {
-                index.entries.insert((language, entry), directory.keys.len());
-                let number = |(key, unit)| Some((key, *numbers.get(&unit)?));
-                let keys: Option<_> = contents.keys.into_iter().map(number).collect();
-                directory
-                    .keys
-                    .push(keys.ok_or_else(|| Error::corrupt(MANIFEST, "a key names no unit"))?);
-            }
+    let index = path.join(INDEX);
+    match file::open(&index) {
+        Ok(index) => Ok(Directory { path: path.to_owned(), index, targets: OnceLock::new() }),
+        // A bundle of a version that had no index names its version, and what is no bundle at all
+        // lacks a manifest too.
+        Err(_) if !index.exists() => {
+            read_manifest(path)?;
+            Err(Error::Io(format!("{INDEX}: {}", std::io::Error::from(ErrorKind::NotFound))))
         }
-        directory.programs.insert(name, index);
+        Err(error) => Err(error),
     }
-    Ok(directory)
 }
 
 /// The file of one blob of a directory bundle, with its target and its stage.
@@ -164,167 +122,122 @@ fn shared_values<T: Clone>(values: &BTreeMap<String, T>) -> BTreeMap<&String, Ar
 }
 
 impl Directory {
-    fn add_unit(
-        &mut self,
-        unit: ManifestUnit,
-        reflections: &BTreeMap<String, Arc<Reflection>>,
-    ) -> Result<(), Error> {
-        let reflection = reflections
-            .get(&unit.reflection)
-            .ok_or_else(|| Error::corrupt(MANIFEST, "a unit names no reflection"))?;
-        let mut targets = BTreeMap::new();
-        refuse_control_characters(MANIFEST, unit.targets.keys())?;
-        for (target, artifact) in unit.targets {
-            artifact.file()?;
-            let next = self.artifacts.len() as u32;
-            let number = *self.numbers.entry(artifact.clone()).or_insert(next);
-            if number == next {
-                self.artifacts.push(artifact.clone());
-            }
-            targets.insert(target, (artifact, number));
-        }
-        self.units.push((reflection.clone(), targets));
-        Ok(())
-    }
-
-    fn entry(&self, entry: usize) -> Result<&BTreeMap<String, u32>, Error> {
-        self.keys
-            .get(entry)
-            .ok_or_else(|| Error::corrupt(MANIFEST, "an entry point is out of range"))
-    }
-
-    /// Reads every blob, on several threads: most of the time is spent in opening files.
-    ///
-    /// # Errors
-    /// That of the first blob which has one.
-    fn verify_blobs(&self) -> Result<(), Error> {
-        let count = self.artifacts.len() as u32;
-        let threads = std::thread::available_parallelism().map_or(1, usize::from) as u32;
-        let part = count.div_ceil(threads).max(LEAST_PART);
-        let verify = |from: u32| -> Result<(), Error> {
-            let mut blobs = from..count.min(from.saturating_add(part));
-            blobs.try_for_each(|blob| self.blob(blob).map(|_| ()))
-        };
-        std::thread::scope(|scope| {
-            let start = |from| {
-                let spawned = std::thread::Builder::new().spawn_scoped(scope, move || verify(from));
-                // A system that gives no more threads does the work on this one.
-                spawned.map_err(|_| from)
-            };
-            let works: Vec<_> = (0..count).step_by(part as usize).map(start).collect();
-            works.into_iter().try_for_each(|work| match work {
-                Ok(thread) => {
-                    thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-                }
-                Err(from) => verify(from),
-            })
-        })
-    }
-
-    /// Refuses the index of another bundle that is not whole.
-    fn verify_other_index(&self, index: Vec<u8>) -> Result<(), Error> {
-        for (blob, name) in blobs_of_index(index)? {
-            let part = format!("{BLOBS}/{name}");
-            let bytes = input::read_file(&self.blobs.join(&name), MOST_GROUP_BYTES as u64)
-                .map_err(|error| Error::Io(format!("{part}: {error}")))?;
-            if to_hex(&checksum(&bytes)) != blob {
-                return Err(Error::corrupt(part, "the checksum does not match"));
-            }
-        }
-        Ok(())
+    /// The file of a blob.
+    fn file_of(&self, blob: u32) -> Result<String, Error> {
+        let targets = self.targets.get_or_init(|| self.index.targets_of_blobs());
+        let target = targets.as_ref().map_err(Clone::clone)?.get(blob as usize);
+        let target = target.ok_or_else(|| Error::corrupt(INDEX, "a blob is out of range"))?;
+        file_of_index(&self.index, blob, *target)
     }
 }
 
-/// The checksums of the blobs that an index names, each with the name of its file.
-fn blobs_of_index(index: Vec<u8>) -> Result<Vec<(String, String)>, Error> {
-    let index = file::from_bytes(index)?;
+/// The file of a blob of an index.
+fn file_of_index(index: &Packed, blob: u32, target: u32) -> Result<String, Error> {
+    let (hash, extension) = (index.digest(blob)?, index.extension(target)?);
+    blob_file_name(&hash, extension).ok_or_else(|| {
+        Error::corrupt(INDEX, format!("`{hash}` and `{extension}` do not name a blob"))
+    })
+}
+
+/// A blob that some table names: its checksum, its length, and its file below `blobs/`.
+type NamedBlob = (String, u64, String);
+
+/// The blobs that an index names.
+fn blobs_of_index(index: &Packed) -> Result<BTreeSet<NamedBlob>, Error> {
     index.verify_index()?;
-    let named = index.outputs()?.into_iter().map(|(blob, extension)| {
-        let name = blob_file_name(&blob, &extension)
-            .ok_or_else(|| Error::corrupt(INDEX, format!("`{blob}` does not name a blob")))?;
-        Ok((blob, name))
+    let named = (0..).zip(index.targets_of_blobs()?).map(|(blob, target)| {
+        let length = index.blob_record(blob)?.length as u64;
+        Ok((index.digest(blob)?, length, file_of_index(index, blob, target)?))
     });
     named.collect()
 }
 
 /// The files of the blobs that an index names.
 pub(super) fn blob_files_of_index(index: Vec<u8>) -> Result<BTreeSet<String>, Error> {
-    Ok(blobs_of_index(index)?.into_iter().map(|(_, name)| name).collect())
+    let blobs = blobs_of_index(&file::from_bytes(index)?)?;
+    Ok(blobs.into_iter().map(|(.., name)| name).collect())
+}
+
+/// The bytes of a blob's file, compared with its length and its checksum.
+fn read_blob(folder: &Path, (hash, length, name): &NamedBlob) -> Result<Vec<u8>, Error> {
+    let path = folder.join(BLOBS).join(name);
+    let part = format!("{BLOBS}/{name}");
+    let io = |error| Error::Io(format!("{part}: {error}"));
+    let found = input::open_file(&path).and_then(|file| file.metadata()).map_err(io)?.len();
+    if found != *length {
+        let words = format!("it has {found} bytes, not {length}");
+        return Err(Error::corrupt(part, words));
+    }
+    let bytes = input::read_file(&path, found.min(MOST_GROUP_BYTES as u64)).map_err(io)?;
+    match to_hex(&checksum(&bytes)) == *hash {
+        true => Ok(bytes),
+        false => Err(Error::corrupt(part, "the checksum does not match")),
+    }
 }
 
 /// How many blobs a thread reads at least.
-const LEAST_PART: u32 = 64;
+const LEAST_PART: usize = 64;
+
+/// Reads blobs, on several threads: most of the time is spent in opening files.
+///
+/// # Errors
+/// That of the first blob which has one.
+fn verify_blobs(folder: &Path, blobs: &[NamedBlob]) -> Result<(), Error> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let part = blobs.len().div_ceil(threads).max(LEAST_PART);
+    let verify = |blobs: &[NamedBlob]| -> Result<(), Error> {
+        blobs.iter().try_for_each(|blob| read_blob(folder, blob).map(drop))
+    };
+    std::thread::scope(|scope| {
+        let start = |part| {
+            let spawned = std::thread::Builder::new().spawn_scoped(scope, move || verify(part));
+            // A system that gives no more threads does the work on this one.
+            spawned.map_err(|_| part)
+        };
+        let works: Vec<_> = blobs.chunks(part).map(start).collect();
+        works.into_iter().try_for_each(|work| match work {
+            Ok(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+            Err(part) => verify(part),
+        })
+    })
+}
 
 impl Store for Directory {
     fn programs(&self) -> &StoredPrograms {
-        &self.programs
+        self.index.programs()
     }
 
     fn shard(&self) -> Option<&ShardOrigin> {
-        self.shard.as_ref()
+        self.index.shard()
     }
 
     fn find(&self, entry: usize, key: &str) -> Result<Option<u32>, Error> {
-        Ok(self.entry(entry)?.get(key).copied())
+        self.index.find(entry, key)
     }
 
     fn each_key(&self, entry: usize, visit: &mut dyn FnMut(&str, u32)) -> Result<(), Error> {
-        self.entry(entry)?.iter().for_each(|(key, unit)| visit(key, *unit));
-        Ok(())
+        self.index.each_key(entry, visit)
     }
 
-    fn unit(&self, unit: u32) -> Result<store::StoredUnit, Error> {
-        let (reflection, targets) = self
-            .units
-            .get(unit as usize)
-            .ok_or_else(|| Error::corrupt(MANIFEST, "a unit is out of range"))?;
-        let targets = targets.iter().map(|(target, (artifact, blob))| {
-            let native = self
-                .natives
-                .get(&artifact.native)
-                .ok_or_else(|| Error::corrupt(MANIFEST, "an artifact names no native"))?;
-            Ok((
-                target.clone(),
-                StoredArtifact {
-                    extension: artifact.extension.clone(),
-                    native: native.clone(),
-                    blob: *blob,
-                },
-            ))
-        });
-        Ok(store::StoredUnit {
-            reflection: reflection.clone(),
-            targets: targets.collect::<Result<_, Error>>()?,
-        })
+    fn unit(&self, unit: u32) -> Result<StoredUnit, Error> {
+        self.index.unit(unit)
+    }
+
+    fn artifact(
+        &self,
+        unit: u32,
+        target: &str,
+    ) -> Result<(Arc<Reflection>, StoredArtifact), Error> {
+        self.index.artifact(unit, target)
     }
 
     fn digest(&self, blob: u32) -> Result<String, Error> {
-        let artifact = self.artifacts.get(blob as usize);
-        let artifact =
-            artifact.ok_or_else(|| Error::corrupt(MANIFEST, "a blob is out of range"))?;
-        Ok(artifact.blob.clone())
+        self.index.digest(blob)
     }
 
     fn blob(&self, blob: u32) -> Result<Vec<u8>, Error> {
-        let artifact = self
-            .artifacts
-            .get(blob as usize)
-            .ok_or_else(|| Error::corrupt(MANIFEST, "a blob is out of range"))?;
-        let name = artifact.file()?;
-        let path = self.blobs.join(&name);
-        let part = format!("{BLOBS}/{name}");
-        let io = |error| Error::Io(format!("{part}: {error}"));
-        let found = input::open_file(&path).and_then(|file| file.metadata()).map_err(io)?.len();
-        if found != artifact.bytes {
-            let words = format!("it has {found} bytes, not {}", artifact.bytes);
-            return Err(Error::corrupt(part, words));
-        }
-        let bytes = input::read_file(&path, found.min(MOST_GROUP_BYTES as u64)).map_err(io)?;
-        if to_hex(&checksum(&bytes)) == artifact.blob {
-            Ok(bytes)
-        } else {
-            Err(Error::corrupt(part, "the checksum does not match"))
-        }
+        let (hash, length) = (self.digest(blob)?, self.index.blob_record(blob)?.length as u64);
+        read_blob(&self.path, &(hash, length, self.file_of(blob)?))
     }
 
     /// Refuses nothing. Each blob is read once, however many units name it, and no blob may be
@@ -333,15 +246,21 @@ impl Store for Directory {
         Ok(())
     }
 
+    /// Checks what this reader has opened and what the folder has now. A run that was stopped has left
+    /// the index of the next bundle beside the manifest of the one before, and both must be whole.
     fn verify(&self) -> Result<(), Error> {
-        self.verify_blobs()?;
-        (0..self.units.len() as u32).try_for_each(|unit| self.unit(unit).map(|_| ()))?;
         let index = input::read_file(&self.path.join(INDEX), MOST_MANIFEST_BYTES)
             .map_err(|error| Error::Io(format!("{INDEX}: {error}")))?;
-        match index == pack_index(&read_manifest(&self.path)?)? {
-            true => Ok(()),
-            // A run that was stopped between the two has left the index of the next bundle.
-            false => self.verify_other_index(index),
+        let mut blobs = blobs_of_index(&self.index)?;
+        let of_manifest = pack_index(&read_manifest(&self.path)?)?;
+        if of_manifest != index {
+            blobs.extend(blobs_of_index(&file::from_bytes(of_manifest)?)?);
         }
+        blobs.extend(blobs_of_index(&file::from_bytes(index)?)?);
+        verify_blobs(&self.path, &blobs.into_iter().collect::<Vec<_>>())
+    }
+
+    fn pack(&self) -> Result<Vec<u8>, Error> {
+        pack_outputs(&self.index, &|blob| self.blob(blob))
     }
 }

@@ -6,7 +6,7 @@ mod outputs;
 mod verify;
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -17,11 +17,12 @@ use bytes::BundleBytes;
 
 use super::contents::{Hash, checksum, refuse_control_characters, to_hex};
 use super::layout::*;
+use super::pack::pack_outputs;
 use super::store::{Store, StoredArtifact, StoredProgram, StoredPrograms, StoredUnit};
 use super::tree::Tree;
 use super::{Axis, Error, Reflection, ShardOrigin, VERSION};
 use crate::packing;
-use lamplight_files::limits::MANIFEST_BYTES;
+use lamplight_files::limits::{BUNDLE_FACTOR, MANIFEST_BYTES};
 
 /// How many decompressed groups are kept, and how many bytes: about what the shaders of one level
 /// of a game need.
@@ -200,13 +201,33 @@ impl Packed {
         u32_at(keys, entry.units as usize + index * 4, "keys")
     }
 
-    /// Of each output: the hash of its bytes in hexadecimal, and the extension of its file.
-    pub(super) fn outputs(&self) -> Result<BTreeSet<(String, String)>, Error> {
-        let outputs = (0..self.meta.artifacts).map(|artifact| {
+    /// The description of the bundle, and the sections whose bytes do not depend on how outputs are
+    /// stored.
+    pub(super) fn tables(&self) -> Result<(&Meta, [&[u8]; 3]), Error> {
+        let sections = [self.section(KEYS)?, self.section(UNITS)?, self.section(VALUES)?];
+        Ok((&self.meta, sections))
+    }
+
+    /// For each blob, the index of the first target that has it.
+    pub(super) fn targets_of_blobs(&self) -> Result<Vec<u32>, Error> {
+        let mut targets = vec![u32::MAX; self.meta.blobs as usize];
+        for artifact in 0..self.meta.artifacts {
             let (target, _, blob) = self.artifact_record(artifact)?;
-            Ok((self.digest(blob)?, target.extension.clone()))
-        });
-        outputs.collect()
+            let found = targets.get_mut(blob as usize);
+            let found = found.ok_or_else(|| Error::corrupt("units", "a blob is out of range"))?;
+            *found = target.min(*found);
+        }
+        Ok(targets)
+    }
+
+    /// The extension of a target's files.
+    pub(super) fn extension(&self, target: u32) -> Result<&str, Error> {
+        self.target(target).map(|target| target.extension.as_str())
+    }
+
+    fn target(&self, index: u32) -> Result<&TargetMeta, Error> {
+        let target = self.meta.targets.get(index as usize);
+        target.ok_or_else(|| Error::corrupt("units", "a target is out of range"))
     }
 
     /// A value of the section VALUES.
@@ -232,12 +253,11 @@ impl Packed {
     }
 
     /// Of an artifact: the target, the number of its native text, and the blob.
-    fn artifact_record(&self, artifact: u32) -> Result<(&TargetMeta, u32, u32), Error> {
+    fn artifact_record(&self, artifact: u32) -> Result<(u32, u32, u32), Error> {
         let units = self.section(UNITS)?;
         let at = self.meta.units as usize * UNIT_BYTES + artifact as usize * ARTIFACT_BYTES;
-        let target = self.meta.targets.get(u32_at(units, at, "units")? as usize);
-        let target = target.ok_or_else(|| Error::corrupt("units", "a target is out of range"))?;
-        Ok((target, u32_at(units, at + 4, "units")?, u32_at(units, at + 8, "units")?))
+        let word = |index: usize| u32_at(units, at + 4 * index, "units");
+        Ok((word(0)?, word(1)?, word(2)?))
     }
 
     fn artifact_of(
@@ -358,6 +378,7 @@ impl Store for Packed {
         let mut targets = BTreeMap::new();
         for artifact in first..first + count {
             let (target, native, blob) = self.artifact_record(artifact)?;
+            let target = self.target(target)?;
             targets.insert(target.name.clone(), self.artifact_of(target, native, blob)?);
         }
         Ok(StoredUnit { reflection: Arc::new(self.value(reflection)?), targets })
@@ -372,6 +393,7 @@ impl Store for Packed {
         let mut known = Vec::new();
         for artifact in first..first + count {
             let (found, native, blob) = self.artifact_record(artifact)?;
+            let found = self.target(found)?;
             if found.name == target {
                 let artifact = self.artifact_of(found, native, blob)?;
                 return Ok((Arc::new(self.value(reflection)?), artifact));
@@ -390,10 +412,15 @@ impl Store for Packed {
     }
 
     fn measure(&self) -> Result<(), Error> {
-        self.within_budget()
+        self.within_budget()?;
+        self.outputs_within(BUNDLE_FACTOR)
     }
 
     fn verify(&self) -> Result<(), Error> {
         self.verify_all()
+    }
+
+    fn pack(&self) -> Result<Vec<u8>, Error> {
+        pack_outputs(self, &|blob| self.blob(blob))
     }
 }

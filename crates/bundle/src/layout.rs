@@ -53,7 +53,7 @@ pub const MOST_GROUP_BYTES: usize = lamplight_files::limits::GROUP_BYTES;
 pub const PROBES: usize = 4096;
 
 /// The META section.
-#[derive(Debug, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Meta {
     pub targets: Vec<TargetMeta>,
     pub programs: BTreeMap<String, ProgramMeta>,
@@ -73,7 +73,7 @@ pub struct TargetMeta {
     pub extension: String,
 }
 
-#[derive(Debug, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct ProgramMeta {
     pub axes: Vec<Axis>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]

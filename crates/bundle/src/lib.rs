@@ -1,7 +1,7 @@
 //! Compiled permutations, as a directory or one file, and the loader an engine uses.
 //!
 //! The directory form is for reading and for version control: `manifest.json`, described by
-//! [`SCHEMA`], and `blobs/` named by content. The single file is for shipping: see [`pack`].
+//! [`SCHEMA`], the same tables in `index.bin`, which the loader opens, and `blobs/` named by content. The single file is for shipping: see [`pack`].
 //! Of the rest of the crate, this module uses only what reads, writes and compresses files, and the
 //! limits on them.
 
@@ -51,7 +51,7 @@ pub use loader::{Bundle, Constant, Found, Program, Shader, constants};
 pub use manifest::SCHEMA;
 pub use merge::{merge, merge_into, patch_directory};
 pub use names::{Language, Stage};
-pub use pack::{pack, replace_file, write_file};
+pub use pack::{pack, replace_file, replace_packed, write_file};
 pub use program_layout::LayoutBinding;
 pub use reflection::{
     Access, Binding, BindingKind, BindingSlot, BufferSizes, ClipSpace, Combined, FrontFace,

@@ -105,7 +105,7 @@ impl Constant {
 }
 
 impl Bundle {
-    /// Opens a directory (its `manifest.json`) or a single file.
+    /// Opens a directory (its `index.bin`) or a single file.
     ///
     /// To change a file while it is open, replace it by renaming: this reader then keeps the old
     /// one. If it is changed in place, readers report an error. Checksums are verified on first use
@@ -165,6 +165,15 @@ impl Bundle {
     /// Checks every byte and every reference.
     pub fn verify(&self) -> Result<(), Error> {
         self.store.verify()
+    }
+
+    /// The single-file form, as [`super::pack`] makes it of [`Self::contents`]. One output at a time
+    /// is in memory.
+    ///
+    /// # Errors
+    /// Those of reading each output, and those of [`super::pack`].
+    pub fn pack(&self) -> Result<Vec<u8>, Error> {
+        self.store.pack()
     }
 
     /// Everything, in memory: to merge, compare, or write in the other form. Units with the same

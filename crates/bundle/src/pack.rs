@@ -9,15 +9,16 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::contents::{checksum, to_json};
+use super::file::Packed;
 use super::layout::{
-    EntryMeta, GROUP_BYTES as GROUP_RECORD_BYTES, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES,
-    Meta, NONE, PROBES, ProgramMeta, RECORD_BYTES, SLOT_BYTES, TargetMeta, hash_key,
+    EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, NONE, PROBES, ProgramMeta,
+    RECORD_BYTES, SLOT_BYTES, TargetMeta, hash_key,
 };
 use super::manifest::{FileStub, Manifest};
 use super::pieces::{List, Piece, PieceTable};
 use super::program_layout::{EntryKeys, program_layout};
 use super::tree::TreeBuilder;
-use super::{Constant, Contents, EntryContents, Error, Hash, Unit, VERSION};
+use super::{Bundle, Constant, Contents, EntryContents, Error, Hash, Unit, VERSION};
 use crate::packing;
 use lamplight_files::input;
 use lamplight_files::output::{self, Foreign, Replace};
@@ -78,6 +79,23 @@ pub fn replace_file(
     path: impl AsRef<Path>,
     replace: Replace,
 ) -> Result<(), Error> {
+    replace_bytes(path, replace, || pack(contents))
+}
+
+/// As [`replace_file`], for the single-file form that [`super::Bundle::pack`] returns.
+pub fn replace_packed(
+    bundle: &Bundle,
+    path: impl AsRef<Path>,
+    replace: Replace,
+) -> Result<(), Error> {
+    replace_bytes(path, replace, || bundle.pack())
+}
+
+fn replace_bytes(
+    path: impl AsRef<Path>,
+    replace: Replace,
+    pack: impl FnOnce() -> Result<Vec<u8>, Error>,
+) -> Result<(), Error> {
     let path = path.as_ref();
     if replace == Replace::Ours
         && let Some(found) = newer_version(path)
@@ -85,7 +103,7 @@ pub fn replace_file(
         return Err(Error::Foreign(Foreign::file(path, newer_bundle(found))));
     }
     let is_bundle = |head: &[u8]| head.starts_with(MAGIC);
-    Ok(output::write_file(path, &pack(contents)?, is_bundle, replace)?)
+    Ok(output::write_file(path, &pack()?, is_bundle, replace)?)
 }
 
 /// The version of the bundle in a file, if it is newer than the one that is written here.
@@ -142,8 +160,7 @@ struct Packer {
     artifacts: Vec<u8>,
     values: TreeBuilder,
     value_numbers: BTreeMap<Vec<u8>, u32>,
-    blobs: Vec<Blob>,
-    pieces: PieceTable,
+    outputs: Outputs,
     blob_numbers: BTreeMap<Hash, u32>,
 }
 
@@ -173,29 +190,15 @@ impl Packer {
     }
 
     fn add_blob(&mut self, bytes: &Arc<[u8]>, target: u32) -> Result<(), Error> {
-        if bytes.len() > MOST_GROUP_BYTES {
-            return Err(Error::Io(format!(
-                "a blob of {} bytes is larger than a bundle takes",
-                bytes.len()
-            )));
-        }
         let sum = self.blob_hash(bytes);
-        let next = to_u32(self.blobs.len())?;
+        let next = to_u32(self.blob_numbers.len())?;
         if *self.blob_numbers.entry(sum).or_insert(next) != next {
             return Ok(());
         }
-        let blob = match self.place {
-            BlobPlace::Files => {
-                let FileStub { hash: _, length } = FileStub::read(bytes);
-                Blob { length, sum, body: Body::File }
-            }
-            BlobPlace::Data => {
-                let list = self.pieces.split(bytes, target).map_err(|_| outgrown())?;
-                let body = list.map_or_else(|| Body::Whole(bytes.clone()), Body::Pieces);
-                Blob { length: to_u32(bytes.len())?, sum, body }
-            }
-        };
-        self.blobs.push(blob);
+        match self.place {
+            BlobPlace::Files => self.outputs.add_stub(FileStub::read(bytes)),
+            BlobPlace::Data => self.outputs.add(bytes, sum, target)?,
+        }
         Ok(())
     }
 
@@ -311,22 +314,76 @@ impl Packer {
     }
 
     fn finish(mut self) -> Result<Vec<u8>, Error> {
-        let (blobs, data) = self.groups()?;
         self.meta.values = to_u32(self.value_numbers.len())?;
         self.units.append(&mut self.artifacts);
-        let mut meta = TreeBuilder::default();
-        meta.add(&to_value(&self.meta)?)?;
-        join_sections([meta.finish()?, self.keys, self.units, self.values.finish()?, blobs, data])
+        let values = self.values.finish()?;
+        finish_file(self.meta, [&self.keys, &self.units, &values], self.outputs)
+    }
+}
+
+/// The single file with the content of an open bundle, whose blobs `read` returns. Only the sections
+/// BLOBS and DATA are made anew.
+pub(super) fn pack_outputs(
+    index: &Packed,
+    read: &dyn Fn(u32) -> Result<Vec<u8>, Error>,
+) -> Result<Vec<u8>, Error> {
+    let (meta, tables) = index.tables()?;
+    let mut outputs = Outputs::default();
+    for (blob, target) in (0..).zip(index.targets_of_blobs()?) {
+        let bytes = read(blob)?;
+        outputs.add(&bytes.into(), index.blob_record(blob)?.sum, target)?;
+    }
+    finish_file(meta.clone(), tables, outputs)
+}
+
+fn finish_file(meta: Meta, tables: [&[u8]; 3], outputs: Outputs) -> Result<Vec<u8>, Error> {
+    let Sections { blobs, pieces, groups, table, data } = outputs.finish()?;
+    let mut root = TreeBuilder::default();
+    root.add(&to_value(&Meta { blobs, pieces, groups, ..meta })?)?;
+    let [keys, units, values] = tables;
+    join_sections([&root.finish()?, keys, units, values, &table, &data])
+}
+
+/// Outputs on their way into the file.
+#[derive(Default)]
+struct Outputs {
+    blobs: Vec<Blob>,
+    pieces: PieceTable,
+}
+
+/// The sections BLOBS and DATA, and how many there are of what.
+struct Sections {
+    blobs: u32,
+    pieces: u32,
+    groups: u32,
+    table: Vec<u8>,
+    data: Vec<u8>,
+}
+
+impl Outputs {
+    fn add_stub(&mut self, FileStub { hash, length }: FileStub) {
+        self.blobs.push(Blob { length, sum: hash, body: Body::File });
     }
 
-    /// Builds the BLOBS and DATA sections.
-    fn groups(&mut self) -> Result<(Vec<u8>, Vec<u8>), Error> {
-        let (pieces, renumbering) = std::mem::take(&mut self.pieces).finish();
-        self.meta.blobs = to_u32(self.blobs.len())?;
-        self.meta.pieces = to_u32(pieces.len())?;
+    fn add(&mut self, bytes: &Arc<[u8]>, sum: Hash, target: u32) -> Result<(), Error> {
+        if bytes.len() > MOST_GROUP_BYTES {
+            return Err(Error::Io(format!(
+                "a blob of {} bytes is larger than a bundle takes",
+                bytes.len()
+            )));
+        }
+        let list = self.pieces.split(bytes, target).map_err(|_| outgrown())?;
+        let body = list.map_or_else(|| Body::Whole(bytes.clone()), Body::Pieces);
+        self.blobs.push(Blob { length: to_u32(bytes.len())?, sum, body });
+        Ok(())
+    }
+
+    fn finish(self) -> Result<Sections, Error> {
+        let Self { blobs, pieces } = self;
+        let (pieces, renumbering) = pieces.finish();
+        let (blob_count, piece_count) = (to_u32(blobs.len())?, to_u32(pieces.len())?);
         let (mut table, mut groups) = (Vec::new(), Groups::default());
-        for blob in std::mem::take(&mut self.blobs) {
-            let Blob { length, sum, body } = blob;
+        for Blob { length, sum, body } in blobs {
             let ([group, offset], words) = match body {
                 Body::File => ([NONE, 0], 0),
                 Body::Whole(bytes) => (groups.add(Kind::Whole, &bytes)?, 0),
@@ -344,10 +401,9 @@ impl Packer {
             let [group, offset] = groups.add(Kind::Pieces, &bytes)?;
             push_words(&mut table, &[group, offset, length, values]);
         }
-        let (mut records, data) = groups.finish()?;
-        self.meta.groups = to_u32(records.len() / GROUP_RECORD_BYTES)?;
+        let (count, mut records, data) = groups.finish()?;
         table.append(&mut records);
-        Ok((table, data))
+        Ok(Sections { blobs: blob_count, pieces: piece_count, groups: count, table, data })
     }
 }
 
@@ -399,12 +455,12 @@ impl Groups {
         Ok(())
     }
 
-    /// The records of all groups, and DATA.
-    fn finish(mut self) -> Result<(Vec<u8>, Vec<u8>), Error> {
+    /// How many groups there are, their records, and DATA.
+    fn finish(mut self) -> Result<(u32, Vec<u8>, Vec<u8>), Error> {
         if self.is_open {
             self.close()?;
         }
-        Ok((self.records, self.data))
+        Ok((self.count, self.records, self.data))
     }
 }
 
@@ -434,8 +490,8 @@ fn build_slots(keys: &[&str], count: usize) -> Result<Vec<u128>, Error> {
 }
 
 /// The header and the sections. DATA has no checksum of its own, since each of its groups has one.
-fn join_sections(sections: [Vec<u8>; 6]) -> Result<Vec<u8>, Error> {
-    let total = HEADER_BYTES + sections.iter().map(Vec::len).sum::<usize>();
+fn join_sections(sections: [&[u8]; 6]) -> Result<Vec<u8>, Error> {
+    let total = HEADER_BYTES + sections.iter().map(|section| section.len()).sum::<usize>();
     let mut file = Vec::with_capacity(total);
     file.extend_from_slice(MAGIC);
     push_words(&mut file, &[VERSION, to_u32(sections.len())?]);

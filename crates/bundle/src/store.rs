@@ -79,4 +79,7 @@ pub trait Store: Send + Sync {
 
     /// Checks every byte.
     fn verify(&self) -> Result<(), Error>;
+
+    /// The single file with the same content.
+    fn pack(&self) -> Result<Vec<u8>, Error>;
 }

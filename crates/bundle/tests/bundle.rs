@@ -140,9 +140,11 @@ fn round_trips() -> Outcome {
     check(packed == pack(&contents)?, "packing twice gives other bytes")?;
     let file = folder.path().join("shaders.lamplight");
     write_file(&contents, &file)?;
-    for bundle in [Bundle::open(folder.path())?, Bundle::open(&file)?, Bundle::from_bytes(packed)?]
-    {
+    let forms =
+        [Bundle::open(folder.path())?, Bundle::open(&file)?, Bundle::from_bytes(packed.clone())?];
+    for bundle in forms {
         bundle.verify()?;
+        check(bundle.pack()? == packed, "a form packs to other bytes")?;
         check(bundle.contents()? == contents, "the contents differ")?;
         let found = bundle
             .program("forward")?

@@ -223,6 +223,9 @@ limits! {
         "memory, time", "the bundle is damaged";
     BUNDLE_FACTOR: u64 = 512, Count, "further such bytes for each byte of its file", "memory, time",
         "the bundle is damaged";
+    BUNDLE_OUTPUTS: u64 = 1 << 14, Count,
+        "bytes of all outputs of a bundle for each byte of its file, where one is read at a time",
+        "time", "the bundle is refused";
     BUNDLE_VALUES: u32 = 1 << 22, Count, "values in one reflection of a bundle, or in its list of programs",
         "memory, time: equal ones are stored once", "the bundle is damaged";
     BUNDLE_NESTING: u32 = 64, Count, "depth of nested values in a bundle", "the stack",

@@ -4,7 +4,7 @@ use super::*;
 use crate::pieces::{self, Found};
 
 /// Where a blob is.
-pub(super) struct BlobRecord {
+pub struct BlobRecord {
     pub group: u32,
     pub offset: usize,
     /// The bytes of the output.
@@ -38,7 +38,7 @@ impl PieceRecord {
 }
 
 impl Packed {
-    pub(super) fn blob_record(&self, blob: u32) -> Result<BlobRecord, Error> {
+    pub fn blob_record(&self, blob: u32) -> Result<BlobRecord, Error> {
         let table = self.section(BLOBS)?;
         let at = blob as usize * BLOB_BYTES;
         let word = |index: usize| Ok::<_, Error>(u32_at(table, at + 4 * index, "blobs")? as usize);

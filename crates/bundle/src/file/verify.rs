@@ -2,7 +2,7 @@
 //! proportion to the file. So a small file cannot ask for much memory or time.
 
 use super::*;
-use lamplight_files::limits::{BUNDLE_BYTES, BUNDLE_FACTOR, Steps};
+use lamplight_files::limits::{BUNDLE_BYTES, BUNDLE_FACTOR, BUNDLE_OUTPUTS, Steps};
 
 /// How many bytes one part of the bundle may still have, in total.
 struct Budget {
@@ -31,6 +31,7 @@ impl Packed {
     pub(super) fn verify_all(&self) -> Result<(), Error> {
         self.verify_sections()?;
         self.within_budget()?;
+        self.outputs_within(BUNDLE_OUTPUTS)?;
         self.verify_tables()?;
         for blob in 0..self.meta.blobs {
             let record = self.blob_record(blob)?;
@@ -71,20 +72,32 @@ impl Packed {
         for group in 0..self.meta.groups {
             groups.spend(self.group_record(group)?.2)?;
         }
+        self.values_within_budget()?;
+        self.keys_within_budget()
+    }
+
+    /// Checks how large all outputs together are, each counted as often as a unit has it. Outputs in
+    /// pieces may be thousands of times as large as the file, and none the worse for it.
+    pub(super) fn outputs_within(&self, factor: u64) -> Result<(), Error> {
         let lengths = self.blob_lengths()?;
-        let mut units = Budget::new(self.bytes.len(), "units");
+        let most = BUNDLE_BYTES.saturating_add(factor.saturating_mul(self.bytes.len() as u64));
+        let mut left = Steps::new(most);
         for unit in 0..self.meta.units {
             let (_, first, count) = self.unit_record(unit)?;
             for artifact in first..first + count {
                 let (_, _, blob) = self.artifact_record(artifact)?;
                 let length = lengths.get(blob as usize).copied();
-                units.spend(
-                    length.ok_or_else(|| Error::corrupt("blobs", "a number is out of range"))?,
-                )?;
+                let length =
+                    length.ok_or_else(|| Error::corrupt("blobs", "a number is out of range"))?;
+                left.spend(length as u64 + 1).map_err(|_| {
+                    let mib = BUNDLE_BYTES >> 20;
+                    Error::Io(format!(
+                        "its outputs have more than {mib} MiB and {factor} times the bytes of the file"
+                    ))
+                })?;
             }
         }
-        self.values_within_budget()?;
-        self.keys_within_budget()
+        Ok(())
     }
 
     fn values_within_budget(&self) -> Result<(), Error> {

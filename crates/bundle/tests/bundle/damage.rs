@@ -68,7 +68,7 @@ pub fn damaged_directories() -> Outcome {
         }
         std::fs::write(folder.path().join("manifest.json"), &damaged)?;
         let what = format!("round {round}: damage of the manifest was not noticed");
-        check(Bundle::open(folder.path()).is_err(), &what)?;
+        check(Bundle::open(folder.path())?.verify().is_err(), &what)?;
     }
     std::fs::write(folder.path().join("manifest.json"), &manifest)?;
     let bundle = Bundle::open(folder.path())?;
