@@ -1,6 +1,7 @@
 //! Pointers as arguments that WGSL allows (`unrestricted_pointer_parameters`) and naga does not:
 //! those to buffers and to workgroup memory, which it refuses, and those to a part of a variable,
-//! which it does not write as SPIR-V.
+//! which it does not write as SPIR-V. Storage textures as arguments are handled as such pointers:
+//! naga stops where it writes them as MSL, and writes GLSL that is not valid.
 //!
 //! A function with such a parameter is made anew for each place that it is called with: the
 //! variable of the module and the members on the way are then a part of its body, and the indices on
@@ -13,8 +14,8 @@ use naga::front::Typifier;
 use naga::proc::ResolveContext;
 use naga::{
     AddressSpace, Arena, Block, EntryPoint, Expression, Function, FunctionArgument, GlobalVariable,
-    Handle, LocalVariable, MemoryDecorations, Module, Range, ResourceBinding, Span, Statement,
-    Type, TypeInner, UniqueArena,
+    Handle, ImageClass, LocalVariable, MemoryDecorations, Module, Range, ResourceBinding, Span,
+    Statement, Type, TypeInner, UniqueArena,
 };
 
 use lamplight_files::limits::PLACED_EXPRESSIONS;
@@ -98,11 +99,19 @@ fn own_places(
     variables: &mut Arena<GlobalVariable>,
 ) -> Option<Places> {
     let mut place = |argument: &FunctionArgument| {
-        let TypeInner::Pointer { base, space } = module.types[argument.ty].inner else {
-            return None;
+        let (base, space) = match module.types[argument.ty].inner {
+            TypeInner::Pointer { base, space } => (base, space),
+            TypeInner::Image { dim: _, arrayed: _, class: _ } => {
+                (argument.ty, AddressSpace::Handle)
+            }
+            _ => return None,
         };
-        let binding = matches!(space, AddressSpace::Uniform | AddressSpace::Storage { access: _ })
-            .then(|| ResourceBinding { group: u32::MAX, binding: variables.len() as u32 });
+        let is_bound = matches!(
+            space,
+            AddressSpace::Uniform | AddressSpace::Storage { access: _ } | AddressSpace::Handle
+        );
+        let number = variables.len() as u32;
+        let binding = is_bound.then_some(ResourceBinding { group: u32::MAX, binding: number });
         let variable = GlobalVariable {
             name: argument.name.clone(),
             space,
@@ -118,13 +127,17 @@ fn own_places(
     arguments.map(|one| if is_refused(module, one) { place(one) } else { Some(None) }).collect()
 }
 
-/// Whether a function takes a pointer that naga refuses.
+/// Whether a function takes a pointer that naga refuses, or a storage texture.
 fn takes(module: &Module, function: &Function) -> bool {
     function.arguments.iter().any(|argument| is_refused(module, argument))
 }
 
 fn is_refused(module: &Module, argument: &FunctionArgument) -> bool {
-    let space = module.types[argument.ty].inner.pointer_space();
+    let inner = &module.types[argument.ty].inner;
+    if let TypeInner::Image { dim: _, arrayed: _, class } = inner {
+        return matches!(class, ImageClass::Storage { format: _, access: _ });
+    }
+    let space = inner.pointer_space();
     space.is_some_and(|space| !matches!(space, AddressSpace::Private | AddressSpace::Function))
 }
 
