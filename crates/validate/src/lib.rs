@@ -5,6 +5,7 @@
 //! ([`limits`]), and every call runs on a large stack with panics caught ([`guard`]).
 
 mod alias;
+mod atomics;
 mod browsers;
 mod constants;
 mod every;
@@ -227,7 +228,9 @@ pub fn is_bounded(module: &naga::Module) -> bool {
 /// Puts into a module what naga needs, for one function at a time: `false` where that is not enough,
 /// and the module must be compiled as a whole.
 pub fn prepare_part(module: &mut naga::Module) -> bool {
-    prepare(module).is_ok() && !pointers::has_pointers_to_place(module)
+    prepare(module).is_ok()
+        && !pointers::has_pointers_to_place(module)
+        && !atomics::has_inner_atomics(module)
 }
 
 /// Puts into a module what naga needs to write it rightly.
@@ -267,6 +270,7 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
         check_switches(composed, &module, &info)?;
     }
     alias::refuse_aliases(composed, original.as_ref().unwrap_or(&module))
+        .and_then(|()| atomics::refuse_atomic_values(composed, &module, &info))
         .map_err(|error| vec![error])?;
     Ok(Validated { language: composed.language, module, info, portable: is_portable })
 }

@@ -11,7 +11,8 @@ const { create } = await import(pathToFileURL(found).href);
 // No device is needed to validate a text. It must live as long as its objects do.
 const gpu = create(["backend=null"]);
 const adapter = await gpu.requestAdapter();
-const device = await adapter.requestDevice();
+// With all that the version knows, such as `f16`.
+const device = await adapter.requestDevice({ requiredFeatures: [...adapter.features] });
 
 const files = readFileSync(0, "utf8").split("\n");
 const lines = [];

@@ -19,7 +19,7 @@ use crate::reflect::{binding_kind, entry_inputs};
 use crate::slots::{Numbering, UsedBinding, assign_slots, native_reflection};
 use crate::text::BoundedText;
 use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, setters, zeros};
-use crate::{columns, lists, rename};
+use crate::{columns, lists, rename, rows};
 use lamplight_bundle::{BindingKind, HeapSampler, Native, Place, SamplerHeap, Semantic, Target};
 
 /// The target, for the table of all.
@@ -113,6 +113,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let name = first_entry_name(info.entry_point_names)?;
     let text = setters::by_reference(&lists::with_plain_constants(&text.0));
     let text = columns::without_casts(&zeros::without_casts(&text));
+    let text = rows::with_major_rows(&text);
     let text = text.replace(&format!("[{UNBOUNDED}] : register"), "[] : register");
     Ok(Emitted { bytes: text.into_bytes(), native: hlsl_reflection(source, &name, &options) })
 }

@@ -13,7 +13,7 @@ use naga::back::msl::{
 use crate::names::first_entry_name;
 use crate::slots::{Numbering, UsedBinding, assign_slots, native_reflection};
 use crate::text::BoundedText;
-use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, gradients, invariants, rename};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, fractions, gradients, invariants, packed, rename};
 use lamplight_validate::BINDING_ARRAYS;
 use lamplight_bundle::{BindingKind, BufferSizes, Target};
 
@@ -55,12 +55,15 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         entry_point: Some((source.stage, source.entry.to_owned())),
         ..PipelineOptions::default()
     };
-    let unlike = rename::rename_types_like_members(source.module);
-    let module = unlike.as_ref().unwrap_or(source.module);
+    let packed = packed::with_packed_vectors(source.module)?;
+    let (module, info) =
+        packed.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
+    let unlike = rename::rename_types_like_members(module);
+    let module = unlike.as_ref().unwrap_or(module);
     let mut text = BoundedText::default();
-    let written = Writer::new(&mut text).write(module, source.info, &options, &pipeline);
+    let written = Writer::new(&mut text).write(module, info, &options, &pipeline);
     let info = written.map_err(|error| text.explain(error))?;
-    let text = with_commas(&gradients::with_dimensions(&text.0));
+    let text = with_commas(&fractions::with_halves(&gradients::with_dimensions(&text.0)));
     let name = first_entry_name(info.entry_point_names)?;
     let mut native = native_reflection(source, &name, Numbering::PerKind);
     native.buffer_sizes = buffer_sizes(source, &text);

@@ -264,10 +264,14 @@ fn joined_columns(read: &[ReadMember], reflected: &[Member]) -> Vec<ReadMember> 
     joined
 }
 
-/// An array whose elements are matrices in the place of structures of columns.
+/// A matrix in the place of a structure of its columns, or an array of such matrices.
 fn with_matrices(ty: &ReadType, reflected: Option<&Shape>) -> ReadType {
     let is_matrix = reflected.is_some_and(|shape| shape.columns.is_some());
+    let is_alone = reflected.is_some_and(|shape| shape.count.is_none());
     match ty {
+        ReadType::Struct { members, size: _ } if is_matrix && is_alone => {
+            join_columns(members).unwrap_or_else(|| ty.clone())
+        }
         ReadType::Array { element, count, stride } if is_matrix => match &**element {
             ReadType::Struct { members, size: _ } => match join_columns(members) {
                 Some(matrix) => {

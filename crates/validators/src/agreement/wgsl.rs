@@ -1,9 +1,11 @@
 //! Reads WGSL with naga's front end.
 
+use naga::back::PipelineConstants;
+use naga::back::pipeline_constants::process_overrides;
 use naga::valid::ModuleInfo;
 use naga::{
-    AddressSpace, ArraySize, GlobalVariable, Handle, ImageClass, ImageDimension, Module, Scalar,
-    ScalarKind, ShaderStage, Type, TypeInner, VectorSize,
+    AddressSpace, ArraySize, GlobalVariable, Handle, ImageClass, ImageDimension, Module, Override,
+    Scalar, ScalarKind, ShaderStage, Type, TypeInner, VectorSize,
 };
 
 use lamplight_bundle::{Binding, BindingKind, BindingSlot, Language, Stage, Varying};
@@ -98,13 +100,8 @@ fn read_module(module: &Module, info: &ModuleInfo) -> Result<Reading, String> {
         _ => return Err("its stage is none of a bundle's".to_owned()),
     };
     let chosen = Some((point.stage, point.name.as_str()));
-    let (fixed, _) = naga::back::pipeline_constants::process_overrides(
-        module,
-        info,
-        chosen,
-        &Default::default(),
-    )
-    .map_err(|error| error.to_string())?;
+    let (fixed, _) = process_overrides(module, info, chosen, &assumed_values(module))
+        .map_err(|error| error.to_string())?;
     let size = fixed.entry_points.first().map(|point| point.workgroup_size);
     let bindings = fixed.global_variables.iter().map(|(_, one)| read_global(&fixed, one));
     Ok(Reading {
@@ -113,6 +110,16 @@ fn read_module(module: &Module, info: &ModuleInfo) -> Result<Reading, String> {
         workgroup_size: size.filter(|_| stage == Stage::Compute),
         bindings: bindings.collect::<Result<Vec<_>, String>>()?.into_iter().flatten().collect(),
     })
+}
+
+/// Values for the overrides that have none: naga computes nothing while one is missing.
+fn assumed_values(module: &Module) -> PipelineConstants {
+    let open = module.overrides.iter().filter(|(_, one)| one.init.is_none());
+    let key = |one: &Override| match (one.id, &one.name) {
+        (Some(id), _) => id.to_string(),
+        (None, name) => name.clone().unwrap_or_default(),
+    };
+    open.map(|(_, one)| (key(one), 1.0)).collect()
 }
 
 fn read_global(module: &Module, variable: &GlobalVariable) -> Result<Option<ReadBinding>, String> {

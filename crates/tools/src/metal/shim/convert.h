@@ -33,6 +33,7 @@ __LL_SHAPES(half, half)
 __LL_SHAPE(packed_float3, float, 3)
 __LL_SHAPE(packed_int3, wchar_t, 3)
 __LL_SHAPE(packed_uint3, unsigned int, 3)
+__LL_SHAPE(packed_half3, half, 3)
 
 template <class T> constexpr int size_of = shape<T>::size;
 template <class T> using element_of = typename shape<T>::element;

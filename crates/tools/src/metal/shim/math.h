@@ -53,6 +53,12 @@ inline float smoothstep(float low, float high, float x) {
 }
 inline float rsqrt(float x) { return 1.0f / __builtin_sqrtf(x); }
 inline float modf(float x, float& whole) { return __builtin_modff(x, &whole); }
+inline half modf(half x, half& whole) {
+  float to;
+  const half rest = half(__builtin_modff(x, &to));
+  whole = half(to);
+  return rest;
+}
 inline float frexp(float x, int& exponent) { return __builtin_frexpf(x, &exponent); }
 
 inline int whole_min(int a, int b) { return a < b ? a : b; }
@@ -170,6 +176,10 @@ inline float modf(float x, float& whole) { return __lamplight::modf(x, whole); }
 __LL_SPLIT(float2, float2, float, modf)
 __LL_SPLIT(float3, float3, float, modf)
 __LL_SPLIT(float4, float4, float, modf)
+inline half modf(half x, half& whole) { return __lamplight::modf(x, whole); }
+__LL_SPLIT(half2, half2, half, modf)
+__LL_SPLIT(half3, half3, half, modf)
+__LL_SPLIT(half4, half4, half, modf)
 inline float frexp(float x, int& exponent) { return __lamplight::frexp(x, exponent); }
 __LL_SPLIT(float2, int2, int, frexp)
 __LL_SPLIT(float3, int3, int, frexp)

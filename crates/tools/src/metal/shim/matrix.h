@@ -5,30 +5,32 @@
 
 namespace __lamplight {
 
-template <int N> struct float_vector;
-template <> struct float_vector<2> { using type = float2; };
-template <> struct float_vector<3> { using type = float3; };
-template <> struct float_vector<4> { using type = float4; };
-template <int N> using floats = typename float_vector<N>::type;
+template <class T, int N> struct vector_of;
+template <> struct vector_of<float, 2> { using type = float2; };
+template <> struct vector_of<float, 3> { using type = float3; };
+template <> struct vector_of<float, 4> { using type = float4; };
+template <> struct vector_of<half, 2> { using type = half2; };
+template <> struct vector_of<half, 3> { using type = half3; };
+template <> struct vector_of<half, 4> { using type = half4; };
 
-template <int Columns, int Rows> struct matrix {
-  using column = floats<Rows>;
-  using row = floats<Columns>;
+template <class T, int Columns, int Rows> struct matrix {
+  using column = typename vector_of<T, Rows>::type;
+  using row = typename vector_of<T, Columns>::type;
   column columns[Columns];
 
   matrix() : columns{} {}
   /// With the number on the diagonal.
-  explicit matrix(float diagonal) : columns{} {
+  explicit matrix(T diagonal) : columns{} {
     for (int i = 0; i < Columns && i < Rows; ++i) columns[i][i] = diagonal;
   }
   /// From columns, or from all numbers.
   template <class... Parts> matrix(column first, Parts... rest) : columns{first, column(rest)...} {
     static_assert(1 + sizeof...(Parts) == Columns, "a matrix takes as many columns as it has");
   }
-  template <class... Parts> matrix(float first, float second, Parts... rest) {
+  template <class... Parts> matrix(T first, T second, Parts... rest) {
     static_assert(2 + sizeof...(Parts) == Columns * Rows,
                   "a matrix takes as many numbers as it has");
-    const float all[] = {first, second, float(rest)...};
+    const T all[] = {first, second, T(rest)...};
     for (int i = 0; i < Columns * Rows; ++i) columns[i / Rows][i % Rows] = all[i];
   }
 
@@ -50,12 +52,12 @@ template <int Columns, int Rows> struct matrix {
     for (int i = 0; i < Columns; ++i) to[i] = -a[i];
     return to;
   }
-  friend matrix operator*(const matrix& a, float b) {
+  friend matrix operator*(const matrix& a, T b) {
     matrix to;
     for (int i = 0; i < Columns; ++i) to[i] = a[i] * b;
     return to;
   }
-  friend matrix operator*(float a, const matrix& b) { return b * a; }
+  friend matrix operator*(T a, const matrix& b) { return b * a; }
   friend column operator*(const matrix& a, row b) {
     column to = a[0] * b[0];
     for (int i = 1; i < Columns; ++i) to += a[i] * b[i];
@@ -64,7 +66,7 @@ template <int Columns, int Rows> struct matrix {
   friend row operator*(column a, const matrix& b) {
     row to = {};
     for (int i = 0; i < Columns; ++i) {
-      float sum = a[0] * b[i][0];
+      T sum = a[0] * b[i][0];
       for (int j = 1; j < Rows; ++j) sum += a[j] * b[i][j];
       to[i] = sum;
     }
@@ -72,10 +74,10 @@ template <int Columns, int Rows> struct matrix {
   }
 };
 
-template <int Columns, int Inner, int Rows>
-inline matrix<Columns, Rows> operator*(const matrix<Inner, Rows>& a,
-                                       const matrix<Columns, Inner>& b) {
-  matrix<Columns, Rows> to;
+template <class T, int Columns, int Inner, int Rows>
+inline matrix<T, Columns, Rows> operator*(const matrix<T, Inner, Rows>& a,
+                                          const matrix<T, Columns, Inner>& b) {
+  matrix<T, Columns, Rows> to;
   for (int i = 0; i < Columns; ++i) to[i] = a * b[i];
   return to;
 }
@@ -84,34 +86,46 @@ inline matrix<Columns, Rows> operator*(const matrix<Inner, Rows>& a,
 
 namespace metal {
 
-using float2x2 = __lamplight::matrix<2, 2>;
-using float2x3 = __lamplight::matrix<2, 3>;
-using float2x4 = __lamplight::matrix<2, 4>;
-using float3x2 = __lamplight::matrix<3, 2>;
-using float3x3 = __lamplight::matrix<3, 3>;
-using float3x4 = __lamplight::matrix<3, 4>;
-using float4x2 = __lamplight::matrix<4, 2>;
-using float4x3 = __lamplight::matrix<4, 3>;
-using float4x4 = __lamplight::matrix<4, 4>;
+using float2x2 = __lamplight::matrix<float, 2, 2>;
+using float2x3 = __lamplight::matrix<float, 2, 3>;
+using float2x4 = __lamplight::matrix<float, 2, 4>;
+using float3x2 = __lamplight::matrix<float, 3, 2>;
+using float3x3 = __lamplight::matrix<float, 3, 3>;
+using float3x4 = __lamplight::matrix<float, 3, 4>;
+using float4x2 = __lamplight::matrix<float, 4, 2>;
+using float4x3 = __lamplight::matrix<float, 4, 3>;
+using float4x4 = __lamplight::matrix<float, 4, 4>;
+using half2x2 = __lamplight::matrix<half, 2, 2>;
+using half2x3 = __lamplight::matrix<half, 2, 3>;
+using half2x4 = __lamplight::matrix<half, 2, 4>;
+using half3x2 = __lamplight::matrix<half, 3, 2>;
+using half3x3 = __lamplight::matrix<half, 3, 3>;
+using half3x4 = __lamplight::matrix<half, 3, 4>;
+using half4x2 = __lamplight::matrix<half, 4, 2>;
+using half4x3 = __lamplight::matrix<half, 4, 3>;
+using half4x4 = __lamplight::matrix<half, 4, 4>;
 
-template <int Columns, int Rows>
-inline __lamplight::matrix<Rows, Columns> transpose(const __lamplight::matrix<Columns, Rows>& m) {
-  __lamplight::matrix<Rows, Columns> to;
+template <class T, int Columns, int Rows>
+inline __lamplight::matrix<T, Rows, Columns> transpose(
+    const __lamplight::matrix<T, Columns, Rows>& m) {
+  __lamplight::matrix<T, Rows, Columns> to;
   for (int i = 0; i < Columns; ++i)
     for (int j = 0; j < Rows; ++j) to[j][i] = m[i][j];
   return to;
 }
 
-inline float determinant(const float2x2& m) { return m[0].x * m[1].y - m[0].y * m[1].x; }
-inline float determinant(const float3x3& m) {
+template <class T> inline T determinant(const __lamplight::matrix<T, 2, 2>& m) {
+  return m[0].x * m[1].y - m[0].y * m[1].x;
+}
+template <class T> inline T determinant(const __lamplight::matrix<T, 3, 3>& m) {
   return m[0].x * (m[1].y * m[2].z - m[1].z * m[2].y) -
          m[0].y * (m[1].x * m[2].z - m[1].z * m[2].x) +
          m[0].z * (m[1].x * m[2].y - m[1].y * m[2].x);
 }
-inline float determinant(const float4x4& m) {
-  float to = 0.0f;
+template <class T> inline T determinant(const __lamplight::matrix<T, 4, 4>& m) {
+  T to = 0;
   for (int i = 0; i < 4; ++i) {
-    float3x3 rest;
+    __lamplight::matrix<T, 3, 3> rest;
     for (int j = 0, k = 0; j < 4; ++j)
       if (j != i) rest[k++] = m[j].yzw;
     to += (i % 2 == 0 ? m[i].x : -m[i].x) * determinant(rest);

@@ -181,6 +181,7 @@ template <class Element, class Vector> struct packed3 {
 using packed_float3 = packed3<float, float3>;
 using packed_int3 = packed3<wchar_t, int3>;
 using packed_uint3 = packed3<unsigned int, uint3>;
+using packed_half3 = packed3<half, half3>;
 
 // A number with a sign is shifted by one without.
 #define __LL_OPERATOR(op)                                                                   \
@@ -197,6 +198,7 @@ using __lamplight::bool2;
 using __lamplight::bool3;
 using __lamplight::bool4;
 using __lamplight::packed_float3;
+using __lamplight::packed_half3;
 using __lamplight::packed_int3;
 using __lamplight::packed_uint3;
 
@@ -215,6 +217,7 @@ using ::int2;
 using ::int3;
 using ::int4;
 using ::packed_float3;
+using ::packed_half3;
 using ::packed_int3;
 using ::packed_uint3;
 using ::uchar;
