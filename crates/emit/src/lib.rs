@@ -44,6 +44,7 @@ pub mod spirv;
 mod strides;
 mod text;
 mod unused;
+mod workgroups;
 mod zeros;
 
 pub use filters::without_derivative_rule;

@@ -36,12 +36,12 @@ fn first_array(line: &str) -> Option<usize> {
         if !is_size(Some(columns)) || !is_size(Some(cross + 1)) {
             return None;
         }
-        let scalar = SCALARS.iter().find_map(|scalar| {
-            let start = columns.checked_sub(scalar.len())?;
-            (line.get(start..columns) == Some(*scalar)).then_some(start)
-        });
         // `uint` ends as `int` does.
-        let start = scalar.filter(|start| !line[..*start].ends_with(is_word))?;
+        let start = SCALARS.iter().find_map(|scalar| {
+            let start = columns.checked_sub(scalar.len())?;
+            let is_whole = !line.get(..start)?.ends_with(is_word);
+            (is_whole && line.get(start..columns) == Some(*scalar)).then_some(start)
+        })?;
         let name = line.get(cross + 2..)?.strip_prefix(' ')?;
         let end = name.find(|c| !is_word(c)).filter(|end| *end > 0)?;
         name[end..].starts_with('[').then_some(start)

@@ -20,6 +20,7 @@ pub mod op {
     pub const TYPE_STRUCT: u16 = 30;
     pub const TYPE_POINTER: u16 = 32;
     pub const CONSTANT: u16 = 43;
+    pub const CONSTANT_NULL: u16 = 46;
     pub const SPEC_CONSTANT_TRUE: u16 = 48;
     pub const SPEC_CONSTANT_FALSE: u16 = 49;
     pub const SPEC_CONSTANT: u16 = 50;
@@ -33,6 +34,8 @@ pub mod op {
     pub const ACCESS_CHAIN: u16 = 65;
     pub const DECORATE: u16 = 71;
     pub const MEMBER_DECORATE: u16 = 72;
+    pub const COMPOSITE_CONSTRUCT: u16 = 80;
+    pub const COMPOSITE_EXTRACT: u16 = 81;
     pub const COPY_OBJECT: u16 = 83;
     pub const IMAGE_WRITE: u16 = 99;
     pub const IMAGE_QUERY_SIZE_LOD: u16 = 103;

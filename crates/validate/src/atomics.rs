@@ -3,7 +3,9 @@
 //! HLSL, and writes MSL that is not valid.
 
 use naga::valid::{FunctionInfo, ModuleInfo};
-use naga::{Expression, Function, Handle, Module, Span, Type, TypeInner};
+use naga::{
+    AddressSpace, Expression, Function, FunctionArgument, Handle, Module, Span, Type, TypeInner,
+};
 
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, codes};
@@ -14,6 +16,10 @@ pub fn refuse_atomic_values(
     module: &Module,
     info: &ModuleInfo,
 ) -> Result<(), Diagnostic> {
+    if let Some(span) = misplaced_pointer(module) {
+        let message = "only buffers and workgroup memory have atomics";
+        return Err(described(composed, Diagnostic::error(codes::WGSL_ERROR, message), span));
+    }
     if !has_inner_atomics(module) {
         return Ok(());
     }
@@ -63,12 +69,29 @@ fn first(module: &Module, function: &Function, info: &FunctionInfo) -> Option<Sp
     all.find(|(_, one)| is_load(one)).map(|(at, _)| function.expressions.get_span(at))
 }
 
+/// The first function with a pointer to an atomic where no atomic can be.
+fn misplaced_pointer(module: &Module) -> Option<Span> {
+    let is_misplaced = |argument: &FunctionArgument| match module.types[argument.ty].inner {
+        TypeInner::Pointer { base, space: AddressSpace::Private | AddressSpace::Function } => {
+            has_atomic(module, base)
+        }
+        _ => false,
+    };
+    let mut all = module.functions.iter();
+    let found = all.find(|(_, function)| function.arguments.iter().any(is_misplaced));
+    found.map(|(handle, _)| module.functions.get_span(handle))
+}
+
 fn describe(composed: &Composed, span: Span) -> Diagnostic {
     let message = "only atomic functions read and write atomics";
     let error = Diagnostic::error(codes::WGSL_ERROR, message)
         .note("help: read each atomic in it with `atomicLoad`");
+    described(composed, error, span)
+}
+
+fn described(composed: &Composed, error: Diagnostic, span: Span) -> Diagnostic {
     match span.to_range().and_then(|range| composed.map.lookup(range)) {
-        Some(span) => error.at(span, "this value has atomics in it"),
+        Some(span) => error.at(span, "atomics are not for this"),
         None => error,
     }
 }

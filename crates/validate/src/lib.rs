@@ -6,6 +6,7 @@
 
 mod alias;
 mod atomics;
+mod bitcasts;
 mod browsers;
 mod constants;
 mod every;
@@ -271,6 +272,7 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
     }
     alias::refuse_aliases(composed, original.as_ref().unwrap_or(&module))
         .and_then(|()| atomics::refuse_atomic_values(composed, &module, &info))
+        .and_then(|()| bitcasts::refuse_changed_shapes(composed, &module, &info))
         .map_err(|error| vec![error])?;
     Ok(Validated { language: composed.language, module, info, portable: is_portable })
 }
@@ -342,9 +344,10 @@ fn with_capabilities(
     Validator::new(flags, capabilities).validate(module).map_err(Box::new)
 }
 
-/// Finds a compute shader with an input that only another stage could give. naga accepts it, and
-/// its writers fail on it with an internal error.
-fn compute_with_inputs(module: &naga::Module) -> Option<&str> {
+/// Finds a compute shader with an input that only another stage could give, or with a result that no
+/// stage takes, and says what it does. naga accepts it, and its writers fail on it with an internal
+/// error.
+fn compute_with_inputs(module: &naga::Module) -> Option<(&str, &'static str)> {
     let is_location =
         |binding: &Option<naga::Binding>| matches!(binding, Some(naga::Binding::Location { .. }));
     let takes = |argument: &naga::FunctionArgument| match &module.types[argument.ty].inner {
@@ -354,20 +357,28 @@ fn compute_with_inputs(module: &naga::Module) -> Option<&str> {
         _ => is_location(&argument.binding),
     };
     let mut points = module.entry_points.iter();
-    let found = points.find(|point| {
-        point.stage == naga::ShaderStage::Compute && point.function.arguments.iter().any(takes)
-    });
-    found.map(|point| point.name.as_str())
+    points.find_map(|point| {
+        let what = match point.stage {
+            naga::ShaderStage::Compute if point.function.arguments.iter().any(takes) => {
+                "takes an input with `@location`"
+            }
+            naga::ShaderStage::Compute if point.function.result.is_some() => "returns a value",
+            _ => return None,
+        };
+        Some((point.name.as_str(), what))
+    })
 }
 
-fn inputs_of_compute(composed: &Composed, name: &str) -> Diagnostic {
+fn inputs_of_compute(composed: &Composed, (name, what): (&str, &str)) -> Diagnostic {
     let code = match composed.language {
         Language::Wesl => codes::WGSL_ERROR,
         Language::Glsl => codes::GLSL_ERROR,
     };
-    let message = format!("the compute shader `{name}` takes an input with `@location`");
-    let error = Diagnostic::error(code, message)
-        .note("a compute shader has built-in inputs only: no stage comes before it");
+    let message = format!("the compute shader `{name}` {what}");
+    let error = Diagnostic::error(code, message).note(
+        "a compute shader has built-in inputs only, and writes to buffers and textures: no stage \
+         comes before it or after it",
+    );
     let start = composed.text.find(&format!("fn {name}")).map(|at| at + 3);
     match start.and_then(|start| composed.map.lookup(start..start + name.len())) {
         Some(span) => error.at(span, "this entry point"),

@@ -9,7 +9,7 @@ use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::slots::{Numbering, native_reflection};
 use crate::spirv::{HEADER_WORDS, SpirvInstruction, bytes, instructions, op};
-use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, descriptors, lacks, sample_mask, short_storage};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, descriptors, lacks, sample_mask, short_storage, workgroups};
 use lamplight_validate::BINDING_ARRAYS;
 use lamplight_bundle::Target;
 
@@ -52,7 +52,8 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         .map_err(|error| error.to_string())?;
     let words = sample_mask::with_storage_queries(&order_variables(&words));
     let words = short_storage::with_extension(descriptors::with_capabilities(&words));
-    let bytes = bytes(&sample_mask::as_arrays(&words)?);
+    let words = workgroups::without_layouts(&sample_mask::as_arrays(&words)?)?;
+    let bytes = bytes(&words);
     Ok(Emitted { bytes, native: native_reflection(source, source.entry, Numbering::Author) })
 }
 

@@ -74,6 +74,11 @@ fn wrong_call(
             let is_wrong = value(1)?.parts.iter().any(|part| *part > most);
             is_wrong.then(|| format!("the exponent of `ldexp` is above {most}"))
         }
+        "clamp" => {
+            let (low, high) = (value(1)?, value(2)?);
+            let is_wrong = low.parts.iter().zip(&high.parts).any(|(low, high)| low > high);
+            is_wrong.then(|| "the lower bound of `clamp` is above the upper one".to_owned())
+        }
         "smoothstep" => {
             let (low, high) = (value(0)?, value(1)?);
             let is_wrong = low.parts.iter().zip(&high.parts).any(|(low, high)| low == high);
