@@ -131,6 +131,7 @@ fn first_needs(version: Version) -> Needs {
     Needs {
         whole_offsets: true,
         defined_divisors: true,
+        bounded_integers: true,
         clamped_bytes: !has_since(version, 400, Some(310)),
         clamped_words: !has_since(version, 420, Some(300)),
         separate_choices: false,

@@ -25,6 +25,9 @@ pub struct Needs {
     /// Integer divisors that are never zero, and never -1 for the smallest number: WGSL says what
     /// the results are, and GLSL does not.
     pub defined_divisors: bool,
+    /// Floats that become integers and are never beyond the range of these: WGSL takes the nearest
+    /// integer that the float can be, and GLSL leaves it open.
+    pub bounded_integers: bool,
     /// Unpacked numbers of 8 bits and of 16 bits that are never below -1.
     pub clamped_bytes: bool,
     pub clamped_words: bool,
@@ -39,6 +42,8 @@ enum Form {
     /// A division or a remainder: of vectors of this size, of signed integers.
     Defined(Option<VectorSize>, bool),
     Clamped(VectorSize),
+    /// A conversion of vectors of this size to integers, from floats with these bounds.
+    Bounded(Option<VectorSize>, [Literal; 2]),
 }
 
 /// The module in which these expressions have another form, and naga's analysis of it; `None` where
@@ -112,6 +117,10 @@ fn forms(
                     _ => None,
                 }
             }
+            Expression::As { expr, kind, convert: Some(4) } if needs.bounded_integers => {
+                shape(module, info, expr)
+                    .and_then(|(size, from)| Some(Form::Bounded(size, integer_bounds(from, kind)?)))
+            }
             Expression::Math { fun: MathFunction::Unpack4x8snorm, .. } if needs.clamped_bytes => {
                 Some(Form::Clamped(VectorSize::Quad))
             }
@@ -123,6 +132,17 @@ fn forms(
         found.extend(form.map(|form| (handle, form)));
     }
     found
+}
+
+/// The least and the largest float that an integer of 32 bits can be.
+fn integer_bounds(from: Scalar, into: ScalarKind) -> Option<[Literal; 2]> {
+    Some(match (from, into) {
+        (Scalar::F32, ScalarKind::Sint) => [i32::MIN as f32, 2_147_483_520.0].map(Literal::F32),
+        (Scalar::F32, ScalarKind::Uint) => [0.0, 4_294_967_040.0].map(Literal::F32),
+        (Scalar::F64, ScalarKind::Sint) => [i32::MIN, i32::MAX].map(f64::from).map(Literal::F64),
+        (Scalar::F64, ScalarKind::Uint) => [u32::MIN, u32::MAX].map(f64::from).map(Literal::F64),
+        _ => return None,
+    })
 }
 
 /// The scalar of a value, and its size if it is a vector.
@@ -214,7 +234,22 @@ impl Maker<'_> {
                 let (fun, arg1) = (MathFunction::Max, Some(least));
                 self.add(Expression::Math { fun, arg: value, arg1, arg2: None, arg3: None })
             }
+            (Form::Bounded(size, bounds), Expression::As { expr, kind, convert }) => {
+                let [least, most] = bounds.map(|bound| self.all(size, bound));
+                let (fun, arg1, arg2) = (MathFunction::Clamp, Some(least), Some(most));
+                let expr = self.add(Expression::Math { fun, arg: expr, arg1, arg2, arg3: None });
+                self.add(Expression::As { expr, kind, convert })
+            }
             (_, expression) => self.add(expression),
+        }
+    }
+
+    /// A number, or a vector of this size with it in all components.
+    fn all(&mut self, size: Option<VectorSize>, number: Literal) -> Value {
+        let value = self.add(Expression::Literal(number));
+        match size {
+            None => value,
+            Some(size) => self.add(Expression::Splat { size, value }),
         }
     }
 
@@ -252,13 +287,7 @@ impl Maker<'_> {
             true => Literal::I32(value),
             false => Literal::U32(value.cast_unsigned()),
         };
-        let all = |maker: &mut Self, value: i32| {
-            let value = maker.add(Expression::Literal(number(value)));
-            match size {
-                None => value,
-                Some(size) => maker.add(Expression::Splat { size, value }),
-            }
-        };
+        let all = |maker: &mut Self, value: i32| maker.all(size, number(value));
         let (zero, one) = (all(self, 0), all(self, 1));
         let mut condition = self.both(BinaryOperator::Equal, right, zero);
         if signed {

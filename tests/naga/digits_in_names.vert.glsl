@@ -1,0 +1,1 @@
+in/n2234_digits_in_block_names.vert.glsl

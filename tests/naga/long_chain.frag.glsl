@@ -1,0 +1,46 @@
+#version 450
+layout(location = 0) in float x;
+layout(location = 0) out vec4 c;
+void main() {
+    if (x < float(1)) c = vec4(1.0);
+    else if (x < float(2)) c = vec4(2.0);
+    else if (x < float(3)) c = vec4(3.0);
+    else if (x < float(4)) c = vec4(4.0);
+    else if (x < float(5)) c = vec4(5.0);
+    else if (x < float(6)) c = vec4(6.0);
+    else if (x < float(7)) c = vec4(7.0);
+    else if (x < float(8)) c = vec4(8.0);
+    else if (x < float(9)) c = vec4(9.0);
+    else if (x < float(10)) c = vec4(10.0);
+    else if (x < float(11)) c = vec4(11.0);
+    else if (x < float(12)) c = vec4(12.0);
+    else if (x < float(13)) c = vec4(13.0);
+    else if (x < float(14)) c = vec4(14.0);
+    else if (x < float(15)) c = vec4(15.0);
+    else if (x < float(16)) c = vec4(16.0);
+    else if (x < float(17)) c = vec4(17.0);
+    else if (x < float(18)) c = vec4(18.0);
+    else if (x < float(19)) c = vec4(19.0);
+    else if (x < float(20)) c = vec4(20.0);
+    else if (x < float(21)) c = vec4(21.0);
+    else if (x < float(22)) c = vec4(22.0);
+    else if (x < float(23)) c = vec4(23.0);
+    else if (x < float(24)) c = vec4(24.0);
+    else if (x < float(25)) c = vec4(25.0);
+    else if (x < float(26)) c = vec4(26.0);
+    else if (x < float(27)) c = vec4(27.0);
+    else if (x < float(28)) c = vec4(28.0);
+    else if (x < float(29)) c = vec4(29.0);
+    else if (x < float(30)) c = vec4(30.0);
+    else if (x < float(31)) c = vec4(31.0);
+    else if (x < float(32)) c = vec4(32.0);
+    else if (x < float(33)) c = vec4(33.0);
+    else if (x < float(34)) c = vec4(34.0);
+    else if (x < float(35)) c = vec4(35.0);
+    else if (x < float(36)) c = vec4(36.0);
+    else if (x < float(37)) c = vec4(37.0);
+    else if (x < float(38)) c = vec4(38.0);
+    else if (x < float(39)) c = vec4(39.0);
+    else if (x < float(40)) c = vec4(40.0);
+    else c = vec4(0.0);
+}

@@ -1,0 +1,1 @@
+@compute @workgroup_size(1) fn cs_main() { let a = array<f32>(); }

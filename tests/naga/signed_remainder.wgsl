@@ -1,0 +1,1 @@
+@fragment fn fs(@location(0) x: vec4f, @location(1) @interpolate(flat) i: vec4i) -> @location(0) vec4f { return x % x.yxzw + x % 3 + vec4f(i % i.yxzw) + vec4f(i % 3) + vec4f(i / i.wzyx) + vec4f(-7.5 % 2.0); }
