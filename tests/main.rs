@@ -44,6 +44,7 @@ mod link_random;
 mod lsp;
 mod metal;
 mod migrate;
+mod naga;
 mod new;
 mod oracles;
 mod outputs;
@@ -104,6 +105,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     lsp::tests,
     metal::tests,
     migrate::tests,
+    naga::tests,
     new::tests,
     oracles::tests,
     outputs::tests,

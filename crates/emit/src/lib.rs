@@ -280,10 +280,24 @@ pub fn at_entry(error: Diagnostic, composed: &Composed, entry: &str) -> Diagnost
         let at = composed.text[part.range.clone()].find(&format!("fn {entry}"));
         part.range.start + at.map_or(0, |at| at + 3)
     });
+    let name = name.or_else(|| declared_name(&composed.text, entry));
     match name.and_then(|start| composed.map.lookup(start..start + entry.len())) {
-        Some(span) => error.at(span, "of this entry point"),
-        None => error,
+        Some(span) if error.labels.is_empty() => error.at(span, "of this entry point"),
+        _ => error,
     }
+}
+
+/// Where a text without known parts, such as one in GLSL, declares an entry point.
+fn declared_name(text: &str, entry: &str) -> Option<usize> {
+    let is_whole = |end: usize| {
+        let next = text[end..].chars().next();
+        next.is_some_and(|next| next != '_' && !next.is_alphanumeric())
+    };
+    ["void ", "fn "].iter().find_map(|word| {
+        let declared = format!("{word}{entry}");
+        let mut found = text.match_indices(&declared).map(|(at, _)| at + word.len());
+        found.find(|at| is_whole(at + entry.len()))
+    })
 }
 
 /// Index of the entry point of that name.

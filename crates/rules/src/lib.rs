@@ -136,6 +136,8 @@ pub struct Parts {
     pub statements: Vec<Vec<Place>>,
     /// The values of the constants and variables of the module.
     pub values: Vec<Place>,
+    /// The types that aliases, variables and members of structures are declared with.
+    pub types: Vec<Place>,
 }
 
 /// The places of what a text is made of; `None` where it is no WGSL. It needs a large stack.
@@ -145,9 +147,14 @@ pub fn parts(text: &str) -> Option<Parts> {
         function.body.statements.iter().map(|statement| statement.place).collect()
     };
     let values = tree.declarations.iter().filter_map(|one| one.value);
+    let aliases = tree.aliases.iter().map(|one| one.of_type);
+    let declared = tree.declarations.iter().filter_map(|one| one.of_type);
+    let members = tree.structs.iter().flat_map(|one| &one.members).map(|one| one.of_type);
+    let types = aliases.chain(members).chain(declared);
     Some(Parts {
         statements: tree.functions.iter().map(statements).collect(),
         values: values.map(|id| tree.place(id)).collect(),
+        types: types.map(|id| tree.place(id)).collect(),
     })
 }
 

@@ -10,14 +10,15 @@ use lamplight_rules::{Place, parts};
 const MOST_PARTS: usize = 512;
 const LONGEST: usize = 1 << 16;
 
-/// The statement, or the value of a declaration, that gives an error. `message` gives the one of a
+/// The statement, or the value or the type of a declaration, that gives an error. `message` gives the one of a
 /// text.
 pub fn place_of_error(
     text: &str,
     message: &dyn Fn(&str) -> Option<String>,
 ) -> Option<Range<usize>> {
     let parts = parts(text).filter(|_| text.len() <= LONGEST)?;
-    let count = parts.values.len() + parts.statements.iter().map(Vec::len).sum::<usize>();
+    let declared = parts.values.len() + parts.types.len();
+    let count = declared + parts.statements.iter().map(Vec::len).sum::<usize>();
     let expected = without_numbers(&message(text).filter(|_| count <= MOST_PARTS)?);
     let is_same = |text: &str| message(text).is_some_and(|one| without_numbers(&one) == expected);
     for statements in parts.statements.iter().filter(|one| !one.is_empty()) {
@@ -29,8 +30,10 @@ pub fn place_of_error(
         let fine = kept.partition_point(|kept| !is_same(&blanked(text, &statements[*kept..])));
         return statements.get(fine).map(|statement| statement.range());
     }
-    let is_it = |value: &&Place| !is_same(&with_zero(text, **value));
-    parts.values.iter().find(is_it).map(|value| value.range())
+    let values = parts.values.iter().map(|place| (place, "0"));
+    let mut all = values.chain(parts.types.iter().map(|place| (place, "f32")));
+    let found = all.find(|(place, plain)| !is_same(&with_plain(text, **place, plain)));
+    found.map(|(place, _)| place.range())
 }
 
 /// Handles of naga differ between the texts.
@@ -47,10 +50,11 @@ fn blanked(text: &str, places: &[Place]) -> String {
     blank
 }
 
-fn with_zero(text: &str, place: Place) -> String {
+/// The text with something plain in a place.
+fn with_plain(text: &str, place: Place, plain: &str) -> String {
     let range = place.range();
     let mut changed = text.to_owned();
-    changed.replace_range(range.clone(), &format!("{:<width$}", 0, width = range.len()));
+    changed.replace_range(range.clone(), &format!("{plain:<width$}", width = range.len()));
     changed
 }
 
@@ -69,6 +73,8 @@ mod tests {
         let text = "fn a() { let x = 1; } fn b() { let y = 2; let z = wrong; let w = wrong; }";
         assert_eq!(place(text), Some("let z = wrong;"));
         assert_eq!(place("const a = 1; const b = wrong; fn c() { let x = b; }"), Some("wrong"));
+        assert_eq!(place("alias A = wrong; var<private> a: A;"), Some("wrong"));
+        assert_eq!(place("struct S { a: u32, b: array<wrong, 4> }"), Some("array<wrong, 4>"));
         assert_eq!(place("fn a() { let x = 1; }"), None);
     }
 }

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use naga::back::PipelineConstants;
 use naga::back::pipeline_constants::{PipelineConstantError, process_overrides};
 use naga::compact::{KeepUnused, compact};
-use naga::valid::ModuleInfo;
+use naga::valid::{ModuleInfo, TypeError, ValidationError};
 use naga::{
     ArraySize, EntryPoint, Expression, Function, GlobalVariable, Handle, Literal, Module, Override,
     Span, Type, TypeInner,
@@ -265,8 +265,16 @@ fn reason(error: &PipelineConstantError) -> String {
         PipelineConstantError::NegativeWorkgroupSize => {
             "the size of a workgroup, which an override decides, is below 1".to_owned()
         }
+        PipelineConstantError::ValidationError(error) if is_empty_array(error.as_inner()) => {
+            "the length of an array, which an override decides, is below 1".to_owned()
+        }
         error => error.to_string(),
     }
+}
+
+fn is_empty_array(error: &ValidationError) -> bool {
+    let ValidationError::Type { handle: _, name: _, source } = error else { return false };
+    matches!(source, TypeError::InvalidArraySize(_))
 }
 
 /// A name that leads back to the override after naga has left some of them out.
