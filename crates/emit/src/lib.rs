@@ -25,6 +25,7 @@ mod isolate;
 mod lacks;
 mod lists;
 mod names;
+mod nesting;
 mod packed;
 pub mod padding;
 mod plain;

@@ -72,6 +72,14 @@ const FRAGMENT: &[(&str, Option<(Rule, &str)>)] = &[
     ),
     ("let a = 4294967295;", Some((Rule::Constant, "4294967295"))),
     ("let a = 4294967295u;", None),
+    ("let a = clamp(p.x, 3.0, 1.0);", Some((Rule::Constant, "clamp(p.x, 3.0, 1.0)"))),
+    ("let a = clamp(p.x, 1.0, 1.0);", None),
+    ("const a = false && 1;", Some((Rule::Constant, "false && 1"))),
+    ("let a = true || same.x == 1;", None),
+    (
+        "const a = true || all(vec2f(1) == vec3f(1));",
+        Some((Rule::Constant, "vec2f(1) == vec3f(1)")),
+    ),
     ("let a = inverseSqrt(-2.0);", Some((Rule::Constant, "inverseSqrt(-2.0)"))),
     (
         "_ = textureSample(t, s, p.xy, vec2i(8, 0));",

@@ -5,6 +5,7 @@
 use naga::valid::Capabilities;
 use naga::back::wgsl::{Writer, WriterFlags};
 
+use crate::nesting::nesting_lack;
 use crate::slots::{Numbering, native_reflection};
 use crate::text::BoundedText;
 use crate::{
@@ -35,6 +36,9 @@ pub const TARGET: TargetEntry = TargetEntry {
 };
 
 fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
+    if let Some(reason) = nesting_lack(source.module) {
+        return Err(reason);
+    }
     let written = specialise::written_module(source.module)?;
     let module = written.as_ref().unwrap_or(source.module);
     let mut text = BoundedText::default();

@@ -19,10 +19,18 @@ pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
     let constants = Constants::of(module);
     let has_subgroups = tree.enabled.contains(&"subgroups");
     for expression in &tree.expressions {
-        let ExprKind::Call { callee, template, arguments } = &expression.kind else { continue };
-        if module.find(callee).is_some() {
-            continue;
-        }
+        let (callee, template, arguments) = match &expression.kind {
+            ExprKind::Call { callee, template, arguments } if module.find(callee).is_none() => {
+                (callee, template, arguments)
+            }
+            ExprKind::Binary { operator, left, right } => {
+                if let Some(message) = wrong_operands(&constants, operator, *left, *right) {
+                    problems.push(Problem::new(Rule::Constant, expression.place, message));
+                }
+                continue;
+            }
+            _ => continue,
+        };
         if is_of_subgroups(callee) && !has_subgroups {
             let message = format!("`{callee}` needs `enable subgroups;`");
             problems.push(Problem::new(Rule::Grammar, expression.place, message));
@@ -44,6 +52,25 @@ pub fn check_untyped(tree: &Tree<'_>, id: ExprId) -> Option<Problem> {
     let is_whole = text.parse::<u64>().is_ok_and(|value| value > i32::MAX as u64);
     let message = format!("{text} does not fit `i32`, the type that it gets here");
     is_whole.then(|| Problem::new(Rule::Constant, tree.place(id), message))
+}
+
+/// Why operands do not go together. naga finds it, but for those that it never computes: the right
+/// sides of `&&` and `||` that do not count.
+fn wrong_operands(
+    constants: &Constants<'_, '_, '_>,
+    operator: &str,
+    left: ExprId,
+    right: ExprId,
+) -> Option<String> {
+    match operator {
+        "&&" | "||" => (constants.type_of(right)? != (Kind::Bool, Shape::Scalar))
+            .then(|| format!("the right side of `{operator}` is no `bool`")),
+        "==" | "!=" | "<" | "<=" | ">" | ">=" => {
+            let (left, right) = (constants.type_of(left)?.1, constants.type_of(right)?.1);
+            (left != right).then(|| format!("the sides of `{operator}` have other types"))
+        }
+        _ => None,
+    }
 }
 
 /// Why a call of a built-in function has no value.
