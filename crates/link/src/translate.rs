@@ -22,8 +22,8 @@ use lamplight_compose::Composed;
 use lamplight_emit as emit;
 use lamplight_emit::spirv::words;
 use lamplight_validate::{
-    Validated, check_switches, functions, guard, info_of, is_bounded, is_small, may_alias,
-    on_large_stack, parse_glsl, prepare_part,
+    Validated, check_switches, functions, guard, has_changed_shapes, info_of, is_bounded, is_small,
+    may_alias, on_large_stack, parse_glsl, prepare_part,
 };
 
 /// A unit in every target.
@@ -95,6 +95,9 @@ fn translate_inner(
     let info = info_of(&module).map_err(|_| Reason::Refused)?;
     if outline.language == Language::Glsl {
         check_switches(composed, &module, &info).map_err(|_| Reason::Refused)?;
+    }
+    if has_changed_shapes(&composed.text, &module, &info) {
+        return Err(Reason::Refused);
     }
     if aliases(&module, &info) {
         return Err(Reason::Alias);

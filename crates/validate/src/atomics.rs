@@ -33,8 +33,13 @@ pub fn refuse_atomic_values(
     }
 }
 
+/// Whether a module may have what is refused here.
+pub fn may_be_refused(module: &Module) -> bool {
+    has_inner_atomics(module) || misplaced_pointer(module).is_some()
+}
+
 /// Whether a structure or an array of a module has an atomic in it.
-pub fn has_inner_atomics(module: &Module) -> bool {
+fn has_inner_atomics(module: &Module) -> bool {
     module.types.iter().any(|(handle, ty)| match ty.inner {
         TypeInner::Struct { .. } | TypeInner::Array { .. } => has_atomic(module, handle),
         _ => false,

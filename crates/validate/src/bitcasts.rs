@@ -24,12 +24,21 @@ pub fn refuse_changed_shapes(
     module: &Module,
     info: &ModuleInfo,
 ) -> Result<(), Diagnostic> {
+    let found = first_change(&composed.text, module, info);
+    found.map_or(Ok(()), |cast| Err(describe(composed, &cast)))
+}
+
+/// Whether a text in WGSL, which naga read as the module, has such a cast.
+pub fn has_changed_shapes(text: &str, module: &Module, info: &ModuleInfo) -> bool {
+    first_change(text, module, info).is_some()
+}
+
+fn first_change(text: &str, module: &Module, info: &ModuleInfo) -> Option<ChangedCast> {
     let functions = module.functions.iter().map(|(handle, function)| (function, &info[handle]));
     let points = module.entry_points.iter().enumerate();
     let points = points.map(|(index, point)| (&point.function, info.get_entry_point(index)));
     let mut all = functions.chain(points);
-    let found = all.find_map(|(function, info)| first(&composed.text, module, function, info));
-    found.map_or(Ok(()), |cast| Err(describe(composed, &cast)))
+    all.find_map(|(function, info)| first(text, module, function, info))
 }
 
 fn first(

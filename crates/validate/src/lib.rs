@@ -14,6 +14,7 @@ mod foreign;
 mod gathers;
 mod glsl;
 mod guard;
+mod halves;
 mod hints;
 mod limits;
 mod locate;
@@ -29,6 +30,7 @@ mod uses;
 mod words;
 
 pub use alias::{NamesGlobal, may_alias};
+pub use bitcasts::has_changed_shapes;
 pub use browsers::{has_lints, lint, lint_wgsl};
 pub use every::validate_every;
 pub use glsl::{check_glsl, check_switches, parse_glsl};
@@ -231,7 +233,7 @@ pub fn is_bounded(module: &naga::Module) -> bool {
 pub fn prepare_part(module: &mut naga::Module) -> bool {
     prepare(module).is_ok()
         && !pointers::has_pointers_to_place(module)
-        && !atomics::has_inner_atomics(module)
+        && !atomics::may_be_refused(module)
 }
 
 /// Puts into a module what naga needs to write it rightly.
@@ -252,6 +254,7 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
     if let Some(name) = compute_with_inputs(&module) {
         return Err(vec![inputs_of_compute(composed, name)]);
     }
+    halves::refuse_exponents(composed, &module).map_err(|error| vec![error])?;
     // A pointer that is placed no longer shows what else leads there.
     let original = match pointers::has_pointers_to_place(&module) {
         true => replace_by_placed(composed, &mut module).map_err(|error| vec![error])?,

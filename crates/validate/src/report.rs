@@ -10,7 +10,7 @@ use naga::valid::ValidationError;
 use super::foreign::native_text;
 use super::hints::{enclosing_call, last_word};
 use super::locate::place_of_error;
-use super::{hints, parse_wgsl, uses, words};
+use super::{halves, hints, parse_wgsl, uses, words};
 use lamplight_bundle::Language;
 use lamplight_compose::{Composed, Part};
 use lamplight_diagnostic::source::Span;
@@ -83,6 +83,9 @@ fn advised(
     message: &str,
     place: Option<Range<usize>>,
 ) -> Diagnostic {
+    if halves::is_about_exponent(message) {
+        return diagnostic.note(halves::ADVICE);
+    }
     let Some(place) = place else { return diagnostic };
     let before = composed.text.get(..place.start).unwrap_or_default().trim_end();
     if message.starts_with("expected assignment or increment/decrement") {

@@ -12,7 +12,7 @@ const { create } = await import(pathToFileURL(found).href);
 const gpu = create(["backend=null"]);
 const adapter = await gpu.requestAdapter();
 // With all that the version knows, such as `f16`.
-const device = await adapter.requestDevice({ requiredFeatures: [...adapter.features] });
+const device = await adapter.requestDevice({ requiredFeatures: [...(adapter.features ?? [])] });
 
 const files = readFileSync(0, "utf8").split("\n");
 const lines = [];
