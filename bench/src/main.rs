@@ -4,6 +4,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod alike;
+mod bundle;
 mod compose;
 mod corpus;
 mod eval;
@@ -26,6 +27,7 @@ type Outcome = Result<(), Box<dyn Error>>;
 type Benchmark = (&'static str, fn() -> Outcome);
 
 const BENCHMARKS: &[Benchmark] = &[
+    ("bundle", bundle::run),
     ("compose", compose::run),
     ("eval", eval::run),
     ("gen", generate::run),

@@ -62,7 +62,7 @@ fn generated(folder: &Path) -> Result<usize, Box<dyn std::error::Error>> {
 }
 
 /// The kernel's peak memory of this process, in bytes.
-fn peak() -> Result<f64, Box<dyn std::error::Error>> {
+pub fn peak() -> Result<f64, Box<dyn std::error::Error>> {
     let status = std::fs::read_to_string("/proc/self/status")?;
     let line = status
         .lines()
