@@ -9,6 +9,7 @@ pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("glsl::messages", each_message),
         Trial::test("glsl::refused", each_refusal),
+        Trial::test("glsl::names_become_reserved", names_become_reserved),
         Trial::test("glsl::mistakes_are_reported_once", reported_once),
         Trial::test("glsl::parser_goes_on", parser_goes_on),
     ]
@@ -48,7 +49,37 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     ("return 1.0;", "return 1.0;", "the function returns no value"),
     ("1.0 = 2.0;", "1.0", "this cannot be written to"),
     ("float a = (1.0;", ";", "expected `)`, found `;`"),
+    ("float input = 1.0;", "input", "`input` is a reserved word of GLSL"),
+    ("vec3 filter = vec3(1.0);", "filter", "`filter` is a reserved word of GLSL"),
+    ("float sample = 1.0;", "sample", "`sample` is a reserved word of GLSL"),
+    ("struct S { float half; };", "half", "`half` is a reserved word of GLSL"),
+    ("struct S { float a; int a; };", "a", "the member `a` is declared twice"),
+    ("flat float a = 1.0;", "float", "a variable of a function has no such word"),
+    ("highp highp float a = 1.0;", "highp", "`highp` stands twice"),
+    ("const uniform float a;", "uniform", "`uniform` contradicts a word before it"),
+    ("uint a = 4294967296u;", "4294967296u", "`4294967296` is not an integer of 32 bits"),
+    ("for (int i = 0; i < 3; i++) { float i = 1.0; }", "i", "`i` is declared twice in this scope"),
+    ("for (int i = 0; i < 3; i++) { { float i = 1.0; } } i;", "i", "`i` is not declared"),
+    ("while (bool go = true) { int go = 1; }", "go", "`go` is declared twice in this scope"),
 ];
+
+/// Names that were free before a version of the language took them.
+const FREE: &[(&str, &str)] =
+    &[("#version 120", "filter"), ("#version 330", "sample"), ("#version 410", "resource")];
+
+fn names_become_reserved() -> Result<(), Failed> {
+    for (version, name) in FREE {
+        let body = format!("void main() {{ float {name} = 1.0; }}");
+        for (version, is_free) in [(*version, true), ("#version 450", false)] {
+            let text = format!("{version}\n{body}\n");
+            let found = translate(&text, Stage::Fragment, SourceId(0), Default::default());
+            if found.is_ok() != is_free {
+                return Err(format!("{version}: {name}: {:?}", found.err()).into());
+            }
+        }
+    }
+    Ok(())
+}
 
 fn each_message() -> Result<(), Failed> {
     for (body, place, message) in MISTAKES {
@@ -86,6 +117,20 @@ fn reported_once() -> Result<(), Failed> {
 
 /// Whole texts of a stage that have no translation; the place, and the message.
 const REFUSED: &[(Stage, &str, &str, &str)] = &[
+    (
+        Stage::Fragment,
+        "layout(binding = 0) uniform B { vec4 a; } x; layout(binding = 1) uniform B { vec4 b; } y; \
+         void main() { }",
+        "B",
+        "there is a block `B` already",
+    ),
+    (
+        Stage::Fragment,
+        "layout(binding = 0) uniform B { vec4 a; }; layout(binding = 1) uniform D { vec4 a; }; \
+         void main() { }",
+        "a",
+        "`a` is declared twice in this scope",
+    ),
     (
         Stage::Compute,
         "layout(constant_id = 1) const int N = 2; const int M = N * 2; int t[M]; void main() { }",

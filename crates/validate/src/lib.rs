@@ -42,7 +42,9 @@ pub use operands::{
 };
 #[doc(hidden)]
 pub use sandbox::{STAGE, SandboxJob, SandboxOutputs, try_in_sandbox};
-pub use translated::{glsl_as_wgsl, lint_as_wgsl, of_translation, positions_of, translate_glsl};
+pub use translated::{
+    glsl_as_wgsl, keeps_rules, lint_as_wgsl, of_translation, positions_of, translate_glsl,
+};
 pub use uses::{first_use, functions, makes_scalar};
 pub use words::NOT_EVERY;
 
@@ -204,6 +206,7 @@ fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
             let module = parse_glsl(naga_stage(stage), &composed.text)
                 .map_err(|errors| report::glsl_errors(composed, &errors))?;
             glsl::check_initial_values(composed, &module)?;
+            translated::check_rules(composed, stage)?;
             Ok(module)
         }
     }

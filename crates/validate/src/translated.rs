@@ -6,9 +6,10 @@ use lamplight_bundle::{Language, SourceClip, Stage};
 use lamplight_compose::{Composed, Segment, SourceMap};
 use lamplight_diagnostic::source::SourceId;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Label, codes};
-use lamplight_glsl::is_for_vulkan;
 use lamplight_glsl::tree::Stage as GlslStage;
 use lamplight_glsl::wgsl::{Clip, Fact, Options, Written};
+use lamplight_glsl::{check, is_for_vulkan, parse};
+use naga::ShaderStage;
 
 use super::{hints, limits, lint, on_large_stack, validate_for_some};
 
@@ -42,14 +43,44 @@ pub fn translate_glsl(
     clip: Clip,
 ) -> Result<Written, Diagnostics> {
     limits::check_limits(composed).map_err(|error| vec![error])?;
-    let stage = match stage {
+    let text = &composed.text;
+    let translate =
+        || lamplight_glsl::translate(text, glsl_stage(stage), COMPOSED, Options { clip });
+    on_large_stack(translate).map_err(|problems| in_authors_text(problems, composed))
+}
+
+fn glsl_stage(stage: Stage) -> GlslStage {
+    match stage {
         Stage::Vertex => GlslStage::Vertex,
         Stage::Fragment => GlslStage::Fragment,
         Stage::Compute => GlslStage::Compute,
+    }
+}
+
+/// Whether a text in GLSL that naga's front end accepts keeps the rules of the language: that front
+/// end lets some mistakes pass. It needs a large stack.
+pub fn keeps_rules(text: &str, stage: ShaderStage) -> bool {
+    let stage = match stage {
+        ShaderStage::Vertex => GlslStage::Vertex,
+        ShaderStage::Fragment => GlslStage::Fragment,
+        ShaderStage::Compute => GlslStage::Compute,
+        _ => return true,
     };
-    let text = &composed.text;
-    on_large_stack(|| lamplight_glsl::translate(text, stage, COMPOSED, Options { clip }))
-        .map_err(|problems| in_authors_text(problems, composed))
+    mistakes_of(text, stage).is_empty()
+}
+
+/// The mistakes of a text, in the author's places. It needs a large stack.
+pub fn check_rules(composed: &Composed, stage: Stage) -> Result<(), Diagnostics> {
+    let mistakes = mistakes_of(&composed.text, glsl_stage(stage));
+    if mistakes.is_empty() { Ok(()) } else { Err(in_authors_text(mistakes, composed)) }
+}
+
+/// What a text breaks of GLSL's rules. What only has no counterpart in WGSL is no mistake of it.
+fn mistakes_of(text: &str, stage: GlslStage) -> Diagnostics {
+    let parsed = parse::parse(text);
+    let checked = check::check(text, &parsed, stage, COMPOSED);
+    let problems = checked.err().unwrap_or_default();
+    problems.into_iter().filter(|problem| problem.code != codes::GLSL_NOT_TRANSLATED).collect()
 }
 
 /// The text as WGSL, with the places of its author. Its warnings are what WGSL has no word for.

@@ -9,6 +9,7 @@ mod table;
 mod wesl;
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use lamplight::diagnostic::{Diagnostic, Severity, codes};
 use lamplight::lint;
@@ -89,12 +90,25 @@ pub fn run(arguments: &[String]) -> CommandResult {
         if !flags.is_empty() {
             print!("{}", table.listed());
         }
-        differences.extend(table.compare(suite.name())?);
+        match table.compare(suite.name(), &commit_of(&folder))? {
+            Ok(note) => println!("{note}"),
+            Err(worse) => differences.push(worse),
+        }
     }
     match differences.is_empty() {
         true => Ok(()),
         false => Err(CommandFailure::check(differences.join("\n"))),
     }
+}
+
+/// The commit of a checkout; `-` where there is none.
+fn commit_of(folder: &Path) -> String {
+    let found = Command::new("git").arg("-C").arg(folder).args(["rev-parse", "HEAD"]).output();
+    let printed = found.ok().filter(|output| output.status.success());
+    printed.map_or_else(
+        || "-".to_owned(),
+        |output| String::from_utf8_lossy(&output.stdout).trim().to_owned(),
+    )
 }
 
 fn tabulate(programs: &[Program]) -> Table {

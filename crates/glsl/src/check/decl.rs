@@ -5,7 +5,7 @@ use super::layout::{Quals, Storage};
 use super::{Checker, Res, Symbol};
 use crate::ast::{self, Base};
 use crate::lexer::At;
-use crate::tree::{Field, Item, Packing, Place, Stage, Struct};
+use crate::tree::{Field, Item, Packing, Place, Stage, Struct, Var};
 use crate::types::{OpaqueKind, Scalar, Type, named_type};
 
 impl<'a> Checker<'a> {
@@ -145,6 +145,7 @@ impl<'a> Checker<'a> {
                 if ty == Type::Void {
                     return self.fail(declarator.name.at, "a member is not `void`");
                 }
+                self.check_name(declarator.name)?;
                 if fields.iter().any(|field| field.name == declarator.name.text) {
                     let message =
                         format!("the member `{}` is declared twice", declarator.name.text);
@@ -306,6 +307,8 @@ impl<'a> Checker<'a> {
         if block.name.text.starts_with("gl_") {
             return self.per_vertex(block);
         }
+        self.check_name(block.name)?;
+        self.check_block_name(place, block.name)?;
         let members = self.fields(&block.members)?;
         if members.is_empty() {
             return self.fail(block.name.at, "a block has at least one member");
@@ -333,6 +336,19 @@ impl<'a> Checker<'a> {
             None => block.members.iter().flat_map(|member| &member.names).enumerate().try_for_each(
                 |(at, member)| self.declare(member.name, Symbol::Member(index, at as u32)),
             ),
+        }
+    }
+
+    /// Two blocks of one kind have two names.
+    fn check_block_name(&mut self, place: Place, name: ast::Name<'a>) -> Res<()> {
+        let is_same = |var: &Var| {
+            let Type::Struct(content) = *var.ty.innermost() else { return false };
+            let content = &self.shader.structs[content as usize];
+            var.place == place && content.block && content.name == name.text
+        };
+        match self.shader.vars.iter().any(is_same) {
+            true => self.fail(name.at, format!("there is a block `{}` already", name.text)),
+            false => Ok(()),
         }
     }
 

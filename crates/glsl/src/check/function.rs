@@ -122,9 +122,7 @@ impl<'a> Checker<'a> {
                 return Ok(*index);
             }
         }
-        if name.text.starts_with("gl_") {
-            return self.fail(name.at, "names that begin with `gl_` are reserved");
-        }
+        self.check_name(name)?;
         let index = self.shader.functions.len() as u32;
         self.shader.functions.push(Function {
             name: name.text.to_owned(),

@@ -94,9 +94,16 @@ const IGNORED: &[&str] = &[
 impl<'a> Checker<'a> {
     pub(super) fn quals(&mut self, list: &'a [Qual<'a>]) -> Res<Quals> {
         let mut quals = Quals::default();
+        let mut words: Vec<&str> = Vec::new();
         for qual in list {
             match qual {
-                Qual::Word(name) => self.qual_word(&mut quals, *name)?,
+                Qual::Word(name) if words.contains(&name.text) => {
+                    return self.fail(name.at, format!("`{}` stands twice", name.text));
+                }
+                Qual::Word(name) => {
+                    words.push(name.text);
+                    self.qual_word(&mut quals, *name)?;
+                }
                 Qual::Layout(entries) => {
                     for (name, value) in entries {
                         self.layout_entry(&mut quals, *name, value.as_ref())?;
@@ -111,10 +118,11 @@ impl<'a> Checker<'a> {
         let storage = match name.text {
             "const" => {
                 quals.constant = true;
-                if quals.storage.is_some() {
-                    return Ok(());
+                match quals.storage {
+                    None => Storage::Const,
+                    Some(Storage::In) => return Ok(()),
+                    Some(_) => return self.fail(name.at, "`const` contradicts a word before it"),
                 }
-                Storage::Const
             }
             "in" => Storage::In,
             "out" => Storage::Out,
@@ -127,7 +135,7 @@ impl<'a> Checker<'a> {
             other => return self.other_word(quals, other, name.at),
         };
         match quals.storage {
-            Some(Storage::Const) if quals.constant => {}
+            Some(Storage::Const) if quals.constant && storage == Storage::In => {}
             Some(before) if before != storage => {
                 return self.fail(name.at, format!("`{}` contradicts a word before it", name.text));
             }

@@ -10,6 +10,7 @@ pub(crate) mod fold;
 mod function;
 mod layout;
 mod operator;
+mod reserved;
 mod stmt;
 mod version;
 
@@ -169,9 +170,7 @@ impl<'a> Checker<'a> {
 
     /// Declares a name in the innermost scope.
     fn declare(&mut self, name: ast::Name<'a>, symbol: Symbol) -> Res<()> {
-        if name.text.starts_with("gl_") {
-            return self.fail(name.at, "names that begin with `gl_` are reserved");
-        }
+        self.check_name(name)?;
         if name.text.len() > 1000 {
             return self.fail(name.at, "the name is longer than 1000 bytes");
         }
@@ -180,6 +179,17 @@ impl<'a> Checker<'a> {
             return self.fail(name.at, format!("`{}` is declared twice in this scope", name.text));
         }
         scope.insert(name.text, symbol);
+        Ok(())
+    }
+
+    /// Refuses a name that the language keeps for itself.
+    fn check_name(&mut self, name: ast::Name<'a>) -> Res<()> {
+        if name.text.starts_with("gl_") {
+            return self.fail(name.at, "names that begin with `gl_` are reserved");
+        }
+        if reserved::is_reserved(name.text, self.version) {
+            return self.fail(name.at, format!("`{}` is a reserved word of GLSL", name.text));
+        }
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use super::layout::Storage;
 use super::{Checker, Res, Symbol};
 use crate::ast::{self, Cond, StmtKind as Ast};
 use crate::lexer::At;
-use crate::tree::{Case, Expr, Loop, Number, Place, Stage, Stmt, StmtKind};
+use crate::tree::{Case, Expr, Interpolation, Loop, Number, Place, Stage, Stmt, StmtKind};
 use crate::types::{INT, Type, UINT};
 
 impl<'a> Checker<'a> {
@@ -20,6 +20,15 @@ impl<'a> Checker<'a> {
 
     fn scoped_statements(&mut self, list: &'a [ast::Stmt<'a>]) -> Vec<Stmt> {
         self.scoped(|checker| checker.statements(list))
+    }
+
+    /// The body of a loop whose header may declare. Its braces make no further scope, so a name of
+    /// the header is not declared in them again.
+    fn header_body(&mut self, statement: &'a ast::Stmt<'a>) -> Vec<Stmt> {
+        match &statement.kind {
+            Ast::Block(list) => self.statements(list),
+            _ => self.body(statement),
+        }
     }
 
     /// A statement that has a scope of its own even without braces.
@@ -102,7 +111,7 @@ impl<'a> Checker<'a> {
     fn while_loop(&mut self, condition: &'a Cond<'a>, body: &'a ast::Stmt<'a>) -> Res<StmtKind> {
         let (declared, condition) = self.condition(condition)?;
         self.loops += 1;
-        let body = self.body(body);
+        let body = self.header_body(body);
         self.loops -= 1;
         Ok(StmtKind::Loop(Box::new(Loop {
             first: Vec::new(),
@@ -135,7 +144,7 @@ impl<'a> Checker<'a> {
             None => None,
         };
         self.loops += 1;
-        let body = self.body(body);
+        let body = self.header_body(body);
         self.loops -= 1;
         let first = before;
         Ok(StmtKind::Loop(Box::new(Loop { first, declared, condition, last: false, step, body })))
@@ -242,6 +251,10 @@ impl<'a> Checker<'a> {
             Some(Storage::Const) => Place::Const,
             Some(_) => return self.fail(vars.ty.at, "a variable of a function has no such word"),
         };
+        let Interpolation { flat, linear, centroid, sample, invariant: _ } = quals.interpolation;
+        if flat || linear || centroid || sample {
+            return self.fail(vars.ty.at, "a variable of a function has no such word");
+        }
         for declarator in &vars.names {
             let name = declarator.name;
             let ty = self.after_name(base.clone(), &declarator.sizes)?;
