@@ -3,7 +3,7 @@
 //! `WESL -> outputs of every target -> executors -> bytes of storage buffers`
 //!
 //! Each file of `tests/compute/cases/` has a table beside it, with the buffers that it is given, and
-//! what they hold afterwards, computed by hand. Random programs are compared with the evaluator.
+//! what they hold afterwards, computed by hand.
 
 mod cases;
 mod run;
