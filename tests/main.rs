@@ -20,6 +20,7 @@ mod browser;
 mod catalogue;
 mod clients;
 mod command_line;
+mod compute;
 mod conventions;
 mod cost;
 mod described;
@@ -83,6 +84,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     clients::tests,
     agreement::tests,
     bounds::tests,
+    compute::tests,
     conventions::tests,
     cost::tests,
     described::tests,

@@ -209,6 +209,8 @@ pub enum Instruction {
     Image {
         access: u32,
     },
+    /// Waits for the other invocations of the workgroup.
+    Barrier,
 }
 
 impl Instruction {

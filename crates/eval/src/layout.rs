@@ -137,7 +137,7 @@ impl<'m> Layout<'m> {
     fn measure(&self, inner: &TypeInner) -> Option<u32> {
         let limit = |slots: u64| u32::try_from(slots.min(u64::from(MAX_SLOTS) + 1)).ok();
         match *inner {
-            TypeInner::Scalar(scalar) => kind_of(scalar).map(|_| 1),
+            TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => kind_of(scalar).map(|_| 1),
             TypeInner::Vector { size, scalar } => kind_of(scalar).map(|_| size as u32),
             TypeInner::Matrix { columns, rows, scalar } => {
                 kind_of(scalar).map(|_| columns as u32 * rows as u32)
@@ -172,49 +172,68 @@ pub fn decode_buffer(
     bytes: &[u8],
     write: &mut dyn FnMut(SlotKind, u32),
 ) {
-    let mut scalars = |scalar: Scalar, count: u32, from: usize| {
-        for index in 0..count as usize {
-            let at = from.saturating_add(4 * index);
-            let word = bytes
-                .get(at..at + 4)
-                .and_then(|bytes| bytes.try_into().ok())
-                .map_or(0, u32::from_le_bytes);
-            write(kind_of(scalar).unwrap_or(SlotKind::Uint), word);
+    each_scalar(types, ty, (0, bytes.len()), &mut |kind, at| {
+        let word = bytes.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
+        write(kind, word.map_or(0, u32::from_le_bytes));
+    });
+}
+
+/// Writes slots into a buffer's bytes: `read` gives the four bytes of each scalar. Bytes between
+/// scalars stay as they are.
+pub fn encode_buffer(
+    types: &UniqueArena<Type>,
+    ty: Handle<Type>,
+    bytes: &mut [u8],
+    read: &mut dyn FnMut(SlotKind) -> u32,
+) {
+    each_scalar(types, ty, (0, bytes.len()), &mut |kind, at| {
+        let word = read(kind).to_le_bytes();
+        if let Some(bytes) = bytes.get_mut(at..at + 4) {
+            bytes.copy_from_slice(&word);
         }
+    });
+}
+
+/// Calls a function with the kind and the offset of each scalar of a type in a buffer. The type
+/// begins at the first of the two offsets, and the buffer ends at the second.
+fn each_scalar(
+    types: &UniqueArena<Type>,
+    ty: Handle<Type>,
+    (from, end): (usize, usize),
+    see: &mut dyn FnMut(SlotKind, usize),
+) {
+    let mut scalars = |scalar: Scalar, count: u32, from: usize| {
+        let kind = kind_of(scalar).unwrap_or(SlotKind::Uint);
+        (0..count as usize).for_each(|index| see(kind, from.saturating_add(4 * index)));
     };
     match types[ty].inner {
-        TypeInner::Scalar(scalar) => scalars(scalar, 1, 0),
-        TypeInner::Vector { size, scalar } => scalars(scalar, size as u32, 0),
+        TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => scalars(scalar, 1, from),
+        TypeInner::Vector { size, scalar } => scalars(scalar, size as u32, from),
         TypeInner::Matrix { columns, rows, scalar } => {
             let stride = if rows as u32 == 2 { 8 } else { 16 };
-            (0..columns as usize).for_each(|column| scalars(scalar, rows as u32, column * stride));
+            let column = |column: usize| from.saturating_add(column * stride);
+            (0..columns as usize).for_each(|index| scalars(scalar, rows as u32, column(index)));
         }
         TypeInner::Array { base, size, stride } => {
+            let stride = stride as usize;
             let count = if let ArraySize::Constant(count) = size {
                 count.get() as usize
             } else {
-                bytes.len() / stride.max(1) as usize
+                end.saturating_sub(from) / stride.max(1)
             };
             (0..count).for_each(|index| {
-                decode_buffer(
-                    types,
-                    base,
-                    rest_from(bytes, index.saturating_mul(stride as usize)),
-                    write,
-                )
+                let first = from.saturating_add(index.saturating_mul(stride));
+                each_scalar(types, base, (first, end), see)
             });
         }
         TypeInner::Struct { ref members, .. } => {
             members.iter().for_each(|member| {
-                decode_buffer(types, member.ty, rest_from(bytes, member.offset as usize), write)
+                let first = from.saturating_add(member.offset as usize);
+                each_scalar(types, member.ty, (first, end), see)
             });
         }
         _ => {}
     }
-}
-
-fn rest_from(bytes: &[u8], from: usize) -> &[u8] {
-    bytes.get(from..).unwrap_or_default()
 }
 
 fn leaf_kind(inner: &TypeInner) -> SlotKind {

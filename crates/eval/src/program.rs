@@ -50,6 +50,8 @@ pub struct Function {
     pub inputs: Vec<Option<naga::Binding>>,
     /// The same for each slot of the result.
     pub outputs: Vec<Option<naga::Binding>>,
+    /// The size of a compute entry point's workgroups.
+    pub workgroup: Option<[u32; 3]>,
     /// Slots of the returned value alone.
     pub(super) returned: u32,
     pub(super) parameters: Vec<ParameterSlots>,
@@ -126,6 +128,8 @@ pub(super) struct Global {
 pub(super) enum GlobalRole {
     /// Initialised at each call, from the slot or with zero.
     Private(Option<Slot>),
+    /// Zero when a workgroup begins, and shared by its invocations.
+    Workgroup,
     Buffer,
     /// A buffer that ends in a runtime-sized array. It is appended to the memory when it is bound.
     /// `address` and `count` are the slots of its address and the array's length, `element` is how
@@ -185,6 +189,13 @@ impl Program {
             }
             _ => None,
         })
+    }
+
+    /// The slots of the variables that the invocations of a workgroup share.
+    pub(super) fn workgroup_slots(&self) -> impl Iterator<Item = std::ops::Range<usize>> {
+        let is_shared = |global: &&Global| global.role == GlobalRole::Workgroup;
+        let range = |global: &Global| global.slot as usize..(global.slot + global.slots) as usize;
+        self.globals.iter().filter(is_shared).map(range)
     }
 
     pub(super) fn instruction(&self, pc: u32) -> Option<&Instruction> {

@@ -2,6 +2,7 @@
 //! file says which systems have the executor. The build script reads it.
 
 use super::Session;
+use super::dispatch::ComputeForm;
 use lamplight_bundle::Target;
 
 /// An executor that is not open yet.
@@ -23,6 +24,9 @@ pub struct ExecutorEntry {
     pub shipping: Option<Shipping>,
     /// Whether it compiles the text of GLSL modules itself, so that it runs no others.
     pub reads_glsl: bool,
+    /// The form in which it runs compute entry points: [`Session::dispatch`]. `None` if it has
+    /// no such stage.
+    pub compute: Option<ComputeForm>,
 }
 
 pub type OpenSession = fn() -> Result<Box<dyn Session>, Unavailable>;

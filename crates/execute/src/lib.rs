@@ -6,9 +6,11 @@
 //! rows of arguments; [`fixture`] is what textures and samplers hold. Devices of wgpu are in
 //! `gpu`; the evaluator runs kernels in `interpreter`, compiled MSL in `metal`, and both draw
 //! [`frame`]s in [`raster`]. Pages of a browser are in [`web`]. Frames are drawn from the
-//! bytes of a bundle too: [`shipped`]. MSL runs as a program of this machine: [`compiled`].
+//! bytes of a bundle too: [`shipped`]. Compute entry points run over the bytes of buffers:
+//! [`dispatch`]. MSL runs as a program of this machine: [`compiled`].
 
 pub mod compiled;
+pub mod dispatch;
 pub mod emitted;
 pub mod executors;
 pub mod fixture;
@@ -29,6 +31,7 @@ pub mod web;
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
+use dispatch::{Dispatch, DispatchResult};
 use frame::{Drawing, Frame};
 use kernel::Kernel;
 use lamplight_diagnostic::{Diagnostic, codes};
@@ -82,6 +85,12 @@ pub trait Session: Send {
     fn draw_shipped(&self, _: ShippedPair<'_>, _: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
         Err(draws_none())
     }
+
+    /// Runs compute entry points, each of them by itself. Executors whose entry has `compute` do
+    /// so, and compile all of them together where that takes less time; the others refuse.
+    fn dispatch(&mut self, dispatches: &[Dispatch<'_>]) -> Vec<DispatchResult> {
+        dispatches.iter().map(|_| Err(computes_none())).collect()
+    }
 }
 
 /// A vertex and a fragment stage.
@@ -100,6 +109,10 @@ fn executor_failed(message: impl Into<String>) -> Diagnostic {
 pub fn module_info(what: &str, module: &naga::Module) -> Result<ModuleInfo, Diagnostic> {
     let validated = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module);
     validated.map_err(|error| executor_failed(format!("the {what} is not valid: {error}")))
+}
+
+fn computes_none() -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_LACKS, "this executor has no compute stage")
 }
 
 fn draws_none() -> Diagnostic {

@@ -1,7 +1,7 @@
 //! Runs the emitted MSL on the CPU, compiled by clang. Kernels are run in batches; frames are drawn
 //! by our own rasterizer.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use rayon::prelude::*;
 
@@ -9,6 +9,7 @@ use super::compiled::CompiledProgram;
 use super::compiled::request::{
     FragmentInput, ImageLevel, MetalImage, MetalResources, TexelFormat,
 };
+use super::dispatch::{Dispatch, DispatchResult, bound_buffers};
 use super::fixture::Fixture;
 use super::frame::{Drawing, EntryPoint, Frame};
 use super::gpu::{emitted, run_batches};
@@ -16,7 +17,7 @@ use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH, kernels_to_compile};
 use super::raster::CompiledStages;
 use super::shipped::Shipped;
 use super::{Session, ShippedPair, executor_failed};
-use lamplight_bundle::{Native, Target};
+use lamplight_bundle::{BindingKind, BufferSizes, Native, Target};
 use lamplight_diagnostic::Diagnostic;
 use lamplight_emit::Emitted;
 use lamplight_eval::{Sampler, Texture, TextureDimension};
@@ -94,6 +95,36 @@ impl Metal {
         Ok(())
     }
 
+    /// Runs a compute entry point whose text is compiled.
+    fn compute(&mut self, dispatch: &Dispatch<'_>, text: &str) -> DispatchResult {
+        let Shipped { native, reflection, .. } = dispatch.output(Target::MSL)?;
+        let size = reflection.workgroup_size.unwrap_or([1; 3]);
+        let mut bound = MetalResources::default();
+        let mut written = BTreeMap::new();
+        for binding in bound_buffers(dispatch.output(Target::MSL)?)? {
+            let place = (binding.group, binding.binding);
+            let slot = native.slots.iter().find(|slot| (slot.group, slot.binding) == place);
+            let slot = slot.and_then(|slot| slot.index);
+            let slot = slot.ok_or_else(|| executor_failed("a buffer has no slot"))?;
+            bound.buffers.insert(slot, dispatch.buffer(place)?.to_vec());
+            if binding.kind == BindingKind::Storage && binding.writable {
+                written.insert(slot, place);
+            }
+        }
+        if let Some(BufferSizes { index, buffers }) = &native.buffer_sizes {
+            let size = |place: &[u32; 2]| dispatch.buffer((place[0], place[1])).map(<[u8]>::len);
+            let sizes: Vec<usize> = buffers.iter().map(size).collect::<Result<_, Diagnostic>>()?;
+            let bytes = sizes.iter().flat_map(|size| (*size as u32).to_ne_bytes());
+            bound.buffers.insert(*index, bytes.collect());
+        }
+        let (program, text) = self.texts[text];
+        let found = self.programs[program].dispatch(text, &bound, (size, dispatch.groups));
+        let mut found = found.map_err(executor_failed)?;
+        let taken =
+            written.into_iter().filter_map(|(slot, place)| Some((place, found.remove(&slot)?)));
+        Ok(taken.collect())
+    }
+
     /// One draw: the words of the target.
     fn draw(&mut self, kernel: &Kernel, texels: &[u32], rows: u32) -> Result<Vec<u32>, Diagnostic> {
         let kept = match self.kept.get(&kernel.code) {
@@ -135,6 +166,21 @@ impl Session for Metal {
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
         self.compile(&[kernel]);
         run_batches(kernel, inputs, |texels, rows| self.draw(kernel, texels, rows))
+    }
+
+    fn dispatch(&mut self, dispatches: &[Dispatch<'_>]) -> Vec<DispatchResult> {
+        let texts = dispatches.iter().map(|dispatch| {
+            dispatch.output(Target::MSL).map(|shipped| shipped.text().into_owned())
+        });
+        let texts: Vec<Result<String, Diagnostic>> = texts.collect();
+        let failure = self.compile_texts(texts.iter().flatten()).err();
+        let runs = dispatches.iter().zip(texts);
+        runs.map(|(dispatch, text)| match (text, &failure) {
+            (Err(error), _) => Err(error),
+            (_, Some(error)) => Err(error.clone()),
+            (Ok(text), None) => self.compute(dispatch, &text),
+        })
+        .collect()
     }
 
     fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {

@@ -259,6 +259,7 @@ impl BatchRun<'_> {
             }
             Instruction::Return => return Some(self.give_back(group)),
             Instruction::Kill => self.lanes.killed |= group.mask,
+            Instruction::Barrier => return None,
             Instruction::Derivative { .. } if !self.env.quad => return None,
             Instruction::Derivative { .. } => return self.meet(instruction, group),
             Instruction::Image { access } => {

@@ -2,6 +2,7 @@
 //!
 //! A [`Body`] is what the lowering of all expressions and statements of a function shares.
 
+mod atomic;
 mod expression;
 mod operator;
 mod statement;
@@ -66,6 +67,7 @@ pub(super) fn lower(module: &Module, info: &ModuleInfo) -> Result<Program, Error
     }
     for (index, entry) in module.entry_points.iter().enumerate() {
         build.function(entry.name.clone(), &entry.function, info.get_entry_point(index));
+        build.workgroup(entry);
     }
     build.finish()
 }
@@ -165,6 +167,7 @@ impl<'m> ProgramBuilder<'m> {
         let inner = &self.module.types[variable.ty].inner;
         let (role, loc) = match (variable.space, inner) {
             (AddressSpace::Private, _) => self.private(variable, slots)?,
+            (AddressSpace::WorkGroup, _) => (GlobalRole::Workgroup, Loc::Place(self.alloc(slots)?)),
             (AddressSpace::Handle, TypeInner::Sampler { .. }) => {
                 (GlobalRole::Sampler, Loc::dense(self.word(index)?, true))
             }
@@ -234,6 +237,7 @@ impl<'m> ProgramBuilder<'m> {
             result: Vec::new(),
             inputs: Vec::new(),
             outputs: Vec::new(),
+            workgroup: None,
             returned: 0,
             parameters: Vec::new(),
             result_slot: 0,
@@ -250,6 +254,14 @@ impl<'m> ProgramBuilder<'m> {
             if let Some(entry) = self.program.functions.last_mut() {
                 entry.error = Some(error);
             }
+        }
+    }
+
+    /// Notes the size of the workgroups of the entry point that was lowered last.
+    fn workgroup(&mut self, entry: &naga::EntryPoint) {
+        if let Some(function) = self.program.functions.last_mut() {
+            let is_compute = entry.stage == naga::ShaderStage::Compute;
+            function.workgroup = is_compute.then_some(entry.workgroup_size);
         }
     }
 

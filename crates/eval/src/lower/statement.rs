@@ -102,6 +102,15 @@ impl LoweredBody<'_, '_> {
             Statement::Call { function, ref arguments, result } => {
                 self.call(function, arguments, result)
             }
+            Statement::ControlBarrier(_) => self.barrier(),
+            // Invocations run one after another, so each sees what the others have written.
+            Statement::MemoryBarrier(_) => Ok(()),
+            Statement::WorkGroupUniformLoad { pointer, result } => {
+                self.uniform_load(pointer, result)
+            }
+            Statement::Atomic { pointer, ref fun, value, result } => {
+                self.atomic(pointer, fun, value, result)
+            }
             ref other => {
                 let text = format!("{other:?}");
                 Err(Error::unsupported(format!(

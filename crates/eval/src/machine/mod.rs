@@ -10,6 +10,7 @@
 mod compute;
 mod texture;
 mod watch;
+mod workgroup;
 
 use crate::code::{Binary, DerivativeDirection, Instruction, Unary};
 use crate::error::{Error, Finding, FindingKind};
@@ -224,6 +225,7 @@ impl<'p, N: Number> Machine<'p, N> {
         match run_lane(env, &mut self.lane, &mut self.watch)? {
             LaneStop::Done => Ok(()),
             LaneStop::Quad => Err(needs_quad(self.program, self.lane.pc)),
+            LaneStop::Barrier => Err(needs_workgroup(self.program, self.lane.pc)),
         }
     }
 
@@ -338,6 +340,17 @@ fn needs_quad(program: &Program, pc: u32) -> Error {
     Error::new(codes::EVAL_NEEDS_QUAD, "a derivative needs a quad of four fragments").or_at(span)
 }
 
+/// The error of a lane that stopped behind a barrier though it runs alone.
+fn needs_workgroup(program: &Program, pc: u32) -> Error {
+    let message = "a barrier needs the other invocations of a workgroup";
+    Error::new(codes::EVAL_BARRIER, message).or_at(barrier_span(program, pc))
+}
+
+/// The place of the barrier that a lane has passed.
+fn barrier_span(program: &Program, pc: u32) -> naga::Span {
+    program.spans.get(pc.saturating_sub(1) as usize).copied().unwrap_or_default()
+}
+
 /// A slot from the 32 bits of a scalar.
 fn slot_from_word<N: Number>(kind: SlotKind, word: u32) -> N {
     match kind {
@@ -390,6 +403,8 @@ enum LaneStop {
     Done,
     /// The instruction at `pc` needs the other lanes of the quad.
     Quad,
+    /// The instruction before `pc` is a barrier.
+    Barrier,
 }
 
 /// Runs until the function returns or needs its neighbours.
@@ -420,6 +435,7 @@ fn run_lane<N: Number>(env: Env, lane: &mut Lane<N>, watch: &mut Watch) -> Resul
                 None => return Ok(LaneStop::Done),
             },
             Instruction::Kill => lane.killed = true,
+            Instruction::Barrier => return Ok(LaneStop::Barrier),
             Instruction::Derivative { .. } => {
                 lane.pc = at;
                 return Ok(LaneStop::Quad);
@@ -559,6 +575,7 @@ impl<N: Number> Machine<'_, N> {
                 match run_lane(env, &mut lanes[index], &mut self.watch)? {
                     LaneStop::Done => running[index] = false,
                     LaneStop::Quad => waiting.push(index),
+                    LaneStop::Barrier => return Err(needs_workgroup(env.program, lanes[index].pc)),
                 }
             }
             // The lanes that are furthest behind go first, since the others may wait at a place

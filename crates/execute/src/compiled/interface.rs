@@ -19,6 +19,10 @@ pub enum InterfaceRole {
     FrontFacing,
     VertexIndex,
     InstanceIndex,
+    /// Memory that the threads of a threadgroup share. It has no attribute.
+    Threadgroup,
+    /// A number that an invocation of a compute stage is given, or three of them.
+    Invocation(&'static str),
 }
 
 /// A parameter or a member with its attributes.
@@ -28,6 +32,8 @@ pub struct InterfaceMember {
     pub role: InterfaceRole,
     /// Whether it is not interpolated (`[[flat]]`).
     pub is_flat: bool,
+    /// The type, of memory that is shared.
+    pub ty: String,
 }
 
 /// One entry point.
@@ -46,12 +52,13 @@ impl Interface {
     /// Reads the only entry point of a text. The error says what is not understood.
     pub fn read(text: &str) -> Result<Self, String> {
         let tokens = msl_tokens(text);
-        let stages = [("vertex", Stage::Vertex), ("fragment", Stage::Fragment)];
+        let stages =
+            [("vertex", Stage::Vertex), ("fragment", Stage::Fragment), ("kernel", Stage::Compute)];
         let found = tokens.iter().enumerate().find_map(|(at, token)| {
             let (_, stage) = stages.iter().find(|(name, _)| *name == token.text)?;
             Some((at, *stage))
         });
-        let (at, stage) = found.ok_or("there is no vertex or fragment entry point")?;
+        let (at, stage) = found.ok_or("there is no entry point")?;
         let [returned, name, "("] = token_texts(&tokens, at + 1)? else {
             return Err(format!("`{}` is not followed by a function", tokens[at].text));
         };
@@ -68,6 +75,11 @@ impl Interface {
         let output =
             if returned == "void" { Vec::new() } else { struct_members(&tokens, returned)? };
         Ok(Self { stage, name: name.to_owned(), parameters, input, output })
+    }
+
+    /// The parameters that are memory of the threadgroup.
+    pub fn shared(&self) -> impl Iterator<Item = &InterfaceMember> {
+        self.parameters.iter().filter(|part| part.role == InterfaceRole::Threadgroup)
     }
 
     /// How many locations its inputs have, and its outputs.
@@ -127,8 +139,7 @@ fn read_part(tokens: &[Token<'_>]) -> Result<InterfaceMember, String> {
     let at = (0..tokens.len()).find(|at| attribute_list(tokens, *at).is_some());
     let Some((at, (attributes, _))) = at.and_then(|at| Some((at, attribute_list(tokens, at)?)))
     else {
-        let words: Vec<&str> = tokens.iter().map(|token| token.text).collect();
-        return Err(format!("`{}` has no attribute", words.join(" ")));
+        return shared_memory(tokens);
     };
     let name = tokens[..at].last().map_or("", |token| token.text).to_owned();
     let role = attributes.iter().find_map(attribute_role).ok_or_else(|| {
@@ -136,7 +147,21 @@ fn read_part(tokens: &[Token<'_>]) -> Result<InterfaceMember, String> {
         format!("`{name}` is `{}`, which nothing stands for on the CPU", names.join(", "))
     })?;
     let is_flat = attributes.iter().any(|attribute| attribute.name == "flat");
-    Ok(InterfaceMember { name, role, is_flat })
+    Ok(InterfaceMember { name, role, is_flat, ty: String::new() })
+}
+
+/// A parameter `threadgroup TYPE& NAME`.
+fn shared_memory(tokens: &[Token<'_>]) -> Result<InterfaceMember, String> {
+    let words: Vec<&str> = tokens.iter().map(|token| token.text).collect();
+    match words.as_slice() {
+        ["threadgroup", ty @ .., "&", name] => Ok(InterfaceMember {
+            name: (*name).to_owned(),
+            role: InterfaceRole::Threadgroup,
+            is_flat: false,
+            ty: ty.concat(),
+        }),
+        _ => Err(format!("`{}` has no attribute", words.join(" "))),
+    }
 }
 
 fn attribute_role(attribute: &MslAttribute<'_>) -> Option<InterfaceRole> {
@@ -153,6 +178,12 @@ fn attribute_role(attribute: &MslAttribute<'_>) -> Option<InterfaceRole> {
         "front_facing" => Some(InterfaceRole::FrontFacing),
         "vertex_id" => Some(InterfaceRole::VertexIndex),
         "instance_id" => Some(InterfaceRole::InstanceIndex),
+        "thread_position_in_grid" => Some(InterfaceRole::Invocation("global")),
+        "thread_position_in_threadgroup" => Some(InterfaceRole::Invocation("local")),
+        "thread_index_in_threadgroup" => Some(InterfaceRole::Invocation("index")),
+        "threadgroup_position_in_grid" => Some(InterfaceRole::Invocation("group")),
+        "threadgroups_per_grid" => Some(InterfaceRole::Invocation("groups")),
+        "threads_per_threadgroup" => Some(InterfaceRole::Invocation("size")),
         _ => None,
     }
 }

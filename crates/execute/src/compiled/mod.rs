@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use request::{
     FragmentInput, MetalResources, RequestWords, ShadedFragment, Transformed, VertexInput, words,
 };
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::{Read as _, Write as _};
 use std::path::PathBuf;
@@ -94,6 +95,34 @@ impl CompiledProgram {
         let shaded: Vec<ShadedFragment> =
             answer.iter().map(|words| ShadedFragment::from_words(words)).collect();
         Ok(shaded.as_chunks::<4>().0.to_vec())
+    }
+
+    /// Runs a compute entry point for a grid of workgroups. Returns the bytes of all buffers
+    /// afterwards, by their slots.
+    ///
+    /// # Errors
+    /// Why the text cannot be run, or how it failed.
+    pub fn dispatch(
+        &mut self,
+        text: usize,
+        bound: &MetalResources,
+        (size, groups): ([u32; 3], [u32; 3]),
+    ) -> Result<BTreeMap<u32, Vec<u8>>, String> {
+        let mut request = self.head(text, 2, bound)?;
+        request.extend(size.into_iter().chain(groups));
+        let words = |bytes: &Vec<u8>| bytes.len().div_ceil(4);
+        let count = bound.buffers.values().map(words).sum();
+        let answer = self.exchange(&request, count);
+        let answer = answer.map_err(|error| self.ended(&error.to_string()))?;
+        let mut rest = answer.as_slice();
+        let mut read = |(slot, before): (&u32, &Vec<u8>)| {
+            let (own, others) = rest.split_at(words(before));
+            rest = others;
+            let mut bytes: Vec<u8> = own.iter().flat_map(|word| word.to_ne_bytes()).collect();
+            bytes.truncate(before.len());
+            (*slot, bytes)
+        };
+        Ok(bound.buffers.iter().map(&mut read).collect())
     }
 
     /// The start of every request.
@@ -368,6 +397,11 @@ fn unit_source(texts: &[&str], unit: &[TextInterface<'_>]) -> String {
 /// Writes the C++ function that calls an entry point: it passes the arguments and stores the
 /// results, according to their attributes.
 fn write_glue(to: &mut String, index: usize, interface: &Interface) {
+    for shared in interface.shared() {
+        let InterfaceMember { name, ty, .. } = shared;
+        let _ =
+            writeln!(to, "namespace {{ namespace text{index} {{ {ty} lamplight_of_{name}; }} }}");
+    }
     let _ = writeln!(
         to,
         "void run{index}(const __lamplight::bindings& bound, const __lamplight::given& given,\n    \
@@ -377,7 +411,11 @@ fn write_glue(to: &mut String, index: usize, interface: &Interface) {
         let _ = writeln!(to, "  text{index}::{name} input = {{}};");
         members.iter().for_each(|member| write_taken(to, member));
     }
-    let arguments: Vec<String> = interface.parameters.iter().map(argument_text).collect();
+    for InterfaceMember { name, .. } in interface.shared() {
+        let _ = writeln!(to, "  __lamplight::spoil(given, text{index}::lamplight_of_{name});");
+    }
+    let argument = |part| argument_text(part, index);
+    let arguments: Vec<String> = interface.parameters.iter().map(argument).collect();
     let returned = if interface.output.is_empty() { "" } else { "const auto output = " };
     let (name, list) = (&interface.name, arguments.join(", "));
     let _ = writeln!(to, "  {returned}text{index}::{name}({list});");
@@ -385,8 +423,12 @@ fn write_glue(to: &mut String, index: usize, interface: &Interface) {
     *to += "}\n";
 }
 
-fn argument_text(part: &InterfaceMember) -> String {
+fn argument_text(part: &InterfaceMember, index: usize) -> String {
     match part.role {
+        InterfaceRole::Threadgroup => format!("text{index}::lamplight_of_{}", part.name),
+        InterfaceRole::Invocation("index") => "given.invocation[3]".to_owned(),
+        InterfaceRole::Invocation("size") => "__lamplight::size_of_group(given)".to_owned(),
+        InterfaceRole::Invocation(of) => format!("__lamplight::{of}_of(given)"),
         InterfaceRole::StageIn => "input".to_owned(),
         InterfaceRole::Buffer(slot) => format!("__lamplight::buffer(bound, {slot})"),
         InterfaceRole::Texture(slot) => format!("__lamplight::texture_of(bound, {slot})"),

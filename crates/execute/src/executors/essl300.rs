@@ -15,6 +15,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     open,
     shipping: Some(Shipping { target: Target::ESSL300, open }),
     reads_glsl: false,
+    compute: None,
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {

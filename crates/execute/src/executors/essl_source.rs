@@ -16,6 +16,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     open,
     shipping: None,
     reads_glsl: true,
+    compute: None,
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {

@@ -4,6 +4,7 @@
 //! Runs on: every system
 
 use super::{ExecutorEntry, Unavailable};
+use crate::dispatch::{ComputeForm, Dispatch, DispatchResult, evaluate};
 use crate::frame::{Drawing, Frame};
 use crate::interpreter::{Interpreter, word_of};
 use crate::kernel::Kernel;
@@ -19,6 +20,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     open: || Ok::<_, Unavailable>(Box::new(Cpu::default())),
     shipping: None,
     reads_glsl: false,
+    compute: Some(ComputeForm::Module),
 };
 
 /// Keeps the program of the last kernel, since all rows of one kernel are run one after another.
@@ -43,6 +45,10 @@ impl Session for Cpu {
             results.extend(found.iter().zip(&kinds).map(|(slot, kind)| word_of(*slot, *kind)));
         }
         Ok(results)
+    }
+
+    fn dispatch(&mut self, dispatches: &[Dispatch<'_>]) -> Vec<DispatchResult> {
+        dispatches.iter().map(evaluate).collect()
     }
 
     fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {

@@ -3,7 +3,9 @@
 //! Runs on: every system but WebAssembly
 
 use super::{DEVICE_SAMPLES, ExecutorEntry, swiftshader};
+use crate::dispatch::ComputeForm;
 use crate::gpu::{AdapterName, DeviceRequest, Shaders};
+use lamplight_bundle::Target;
 
 pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "gl",
@@ -20,4 +22,5 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     },
     shipping: None,
     reads_glsl: false,
+    compute: Some(ComputeForm::Output(Target::WGSL)),
 };

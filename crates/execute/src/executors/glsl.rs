@@ -3,6 +3,7 @@
 //! Runs on: every system but WebAssembly
 
 use super::{ExecutorEntry, Shipping, Unavailable};
+use crate::dispatch::ComputeForm;
 use crate::Session;
 use lamplight_bundle::Target;
 
@@ -15,6 +16,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     open,
     shipping: Some(Shipping { target: Target::GLSL450, open }),
     reads_glsl: false,
+    compute: Some(ComputeForm::Output(Target::GLSL450)),
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {

@@ -4,6 +4,7 @@
 //! Runs on: every system but WebAssembly
 
 use super::{ExecutorEntry, Shipping, Unavailable, swiftshader};
+use crate::dispatch::ComputeForm;
 use crate::Session;
 use crate::gpu::{AdapterName, Shaders};
 use lamplight_bundle::Target;
@@ -18,6 +19,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     open,
     shipping: Some(Shipping { target: Target::HLSL, open }),
     reads_glsl: false,
+    compute: Some(ComputeForm::Output(Target::HLSL)),
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {

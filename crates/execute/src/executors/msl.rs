@@ -3,6 +3,7 @@
 //! Runs on: every system but WebAssembly
 
 use super::{ExecutorEntry, Shipping, Unavailable};
+use crate::dispatch::ComputeForm;
 use crate::Session;
 use crate::metal::Metal;
 use lamplight_bundle::Target;
@@ -17,6 +18,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     open,
     shipping: Some(Shipping { target: Target::MSL, open }),
     reads_glsl: false,
+    compute: Some(ComputeForm::Output(Target::MSL)),
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {

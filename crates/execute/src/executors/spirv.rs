@@ -4,6 +4,7 @@
 //! Runs on: every system but WebAssembly
 
 use super::{ExecutorEntry, Shipping, swiftshader};
+use crate::dispatch::ComputeForm;
 use crate::gpu::{AdapterName, Shaders};
 use lamplight_bundle::Target;
 
@@ -28,4 +29,5 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
         },
     }),
     reads_glsl: false,
+    compute: Some(ComputeForm::Output(Target::SPIRV)),
 };

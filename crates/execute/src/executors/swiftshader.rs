@@ -7,6 +7,7 @@ use std::path::Path;
 use std::sync::Once;
 
 use super::{DEVICE_SAMPLES, ExecutorEntry, Shipping, Unavailable};
+use crate::dispatch::ComputeForm;
 use crate::Session;
 use crate::gpu::{AdapterName, Shaders};
 use lamplight_bundle::Target;
@@ -21,6 +22,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     // wgpu reads WGSL itself.
     shipping: Some(Shipping { target: Target::WGSL, open }),
     reads_glsl: false,
+    compute: Some(ComputeForm::Output(Target::WGSL)),
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {

@@ -3,7 +3,9 @@
 //! Runs on: every system but WebAssembly
 
 use super::{DEVICE_SAMPLES, ExecutorEntry, swiftshader};
+use crate::dispatch::ComputeForm;
 use crate::gpu::{AdapterName, Shaders};
+use lamplight_bundle::Target;
 
 pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "vulkan",
@@ -14,4 +16,5 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     open: || super::open_vulkan(AdapterName::Without(swiftshader::NAME), Shaders::Translated),
     shipping: None,
     reads_glsl: false,
+    compute: Some(ComputeForm::Output(Target::WGSL)),
 };

@@ -18,6 +18,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     open,
     shipping: Some(Shipping { target: Target::WGSL, open }),
     reads_glsl: false,
+    compute: None,
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {

@@ -1,5 +1,6 @@
 //! What the executors on GPUs share: runs kernels through wgpu, without a window.
 
+mod compute;
 mod draw;
 mod fixtures;
 mod heaps;
@@ -17,6 +18,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use super::dispatch::{Dispatch, DispatchResult};
 use super::frame::{Drawing, Frame};
 use super::kernel::{ECHO, INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
 use super::shipped::ColorFormat;
@@ -61,6 +63,10 @@ impl Session for WgpuDevice {
             let buffer = self.guarded(|gpu| gpu.submit(kernel, texels, rows))??;
             self.read(&buffer)
         })
+    }
+
+    fn dispatch(&mut self, dispatches: &[Dispatch<'_>]) -> Vec<DispatchResult> {
+        dispatches.iter().map(|dispatch| self.compute(dispatch)).collect()
     }
 
     fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {

@@ -83,6 +83,11 @@ pub fn hlsl_lacks(text: &str) -> Option<&'static str> {
              buffer 16 bytes further than Direct3D does",
         );
     }
+    if text.lines().any(is_signed_atomic) {
+        return Some(
+            "glslangValidator takes numbers in byte buffers for unsigned in atomic functions",
+        );
+    }
     let named = |name: &str| {
         text_words(text)
             .any(|word| word.text == name && text[word.at + name.len()..].starts_with('('))
@@ -91,6 +96,24 @@ pub fn hlsl_lacks(text: &str) -> Option<&'static str> {
         return Some("frexp of Direct3D drops the sign, and that of glslangValidator keeps it");
     }
     named("ldexp").then_some("glslangValidator takes no integer for the exponent of ldexp")
+}
+
+/// Whether a line calls an atomic function of a byte buffer for signed numbers.
+fn is_signed_atomic(line: &str) -> bool {
+    let line = line.trim_start_matches([' ', '{']);
+    let is_signed = line.starts_with("int ") || line.contains("_result_Sint_4_ ");
+    is_signed && line.contains(".Interlocked")
+}
+
+/// The text with an unsigned 0 where an atomic value is loaded: glslangValidator does not convert the
+/// argument of an atomic function of a byte buffer.
+fn with_unsigned_zeros(text: &[u8]) -> Vec<u8> {
+    let text = String::from_utf8_lossy(text);
+    let change = |line: &str| match line.contains(".InterlockedOr(") {
+        true => line.replace(", 0, ", ", 0u, "),
+        false => line.to_owned(),
+    };
+    text.split_inclusive('\n').map(change).collect::<String>().into_bytes()
 }
 
 /// Whether glslangValidator gives members of a constant buffer other offsets than Direct3D does. In
@@ -131,7 +154,7 @@ fn compile_hlsl(
             "-o",
             "/dev/stdout",
         ],
-        text,
+        &with_unsigned_zeros(text),
     )?;
     // The static samplers are still variables here, which Vulkan does not allow.
     let legal = SPIRV_OPT

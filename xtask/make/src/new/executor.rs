@@ -130,6 +130,7 @@ const FIELDS: &[(&str, &str)] = &[
         "`Some(Shipping { target, open })` if it draws the files of a target as they are.",
     ),
     ("reads_glsl: ", "Whether it compiles the text of GLSL modules itself, as `glsl_source` does."),
+    ("compute: ", "The form in which it takes compute entry points, if it implements `dispatch`."),
 ];
 
 /// The text with a comment above each field of [`FIELDS`].
@@ -196,6 +197,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     },
     shipping: None,
     reads_glsl: false,
+    compute: None,
 };
 "#;
 
@@ -221,6 +223,7 @@ pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     open: || Ok(Box::new(Own { adapter: open_device()? })),
     shipping: None,
     reads_glsl: false,
+    compute: None,
 };
 
 /// An open device.

@@ -318,7 +318,11 @@ unsafe fn bind_attributes(gl: &glow::Context, mesh: &Mesh) -> Result<Option<glow
 /// # Safety
 ///
 /// The context is current.
-unsafe fn create_buffer(gl: &glow::Context, of: u32, bytes: &[u8]) -> Result<glow::Buffer, String> {
+pub(super) unsafe fn create_buffer(
+    gl: &glow::Context,
+    of: u32,
+    bytes: &[u8],
+) -> Result<glow::Buffer, String> {
     // SAFETY: the context is current.
     unsafe {
         let buffer = gl.create_buffer()?;

@@ -6,9 +6,11 @@
 //!
 //! Programs are compiled and linked from two texts; fixtures and words become textures and samplers.
 
+mod compute;
 mod context;
 mod frame;
 
+use crate::dispatch::{Dispatch, DispatchResult};
 use crate::fixture::{Address, Compare, Fixture, FixtureSampler, FixtureTexture};
 use crate::frame::{Drawing, Frame};
 use crate::gpu::{emitted, executor_failed};
@@ -111,6 +113,10 @@ impl Session for OpenGl {
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
         crate::gpu::run_batches(kernel, inputs, |texels, rows| self.draw(kernel, texels, rows))
+    }
+
+    fn dispatch(&mut self, dispatches: &[Dispatch<'_>]) -> Vec<DispatchResult> {
+        dispatches.iter().map(|dispatch| self.compute(dispatch)).collect()
     }
 
     fn draw_shipped(
@@ -314,11 +320,15 @@ fn missing_extension(gl: &glow::Context, text: &[u8]) -> Option<String> {
 
 /// Compiles and links both stages.
 fn link_program(gl: &glow::Context, vertex: &str, fragment: &str) -> Result<glow::Program, String> {
+    link_stages(gl, &[(glow::VERTEX_SHADER, vertex), (glow::FRAGMENT_SHADER, fragment)])
+}
+
+fn link_stages(gl: &glow::Context, stages: &[(u32, &str)]) -> Result<glow::Program, String> {
     // SAFETY: the context is current; every name is of this context.
     unsafe {
         let program = gl.create_program()?;
-        for (stage, text) in [(glow::VERTEX_SHADER, vertex), (glow::FRAGMENT_SHADER, fragment)] {
-            let shader = gl.create_shader(stage)?;
+        for (stage, text) in stages {
+            let shader = gl.create_shader(*stage)?;
             gl.shader_source(shader, text);
             gl.compile_shader(shader);
             if !gl.get_shader_compile_status(shader) {

@@ -1,7 +1,9 @@
-// What kernels use besides: atomics, barriers, functions over a simdgroup. They are declared for
-// the validator; nothing runs them here.
+// What kernels use besides: atomics, barriers, functions over a simdgroup. The invocations of a
+// workgroup take turns at barriers only, so that atomic functions are plain ones. Functions over a
+// simdgroup are declared for the validator; nothing runs them here.
 #pragma once
 
+#include "runtime.h"
 #include "types.h"
 
 namespace __lamplight {
@@ -24,27 +26,43 @@ typedef __lamplight::atomic<float> atomic_float;
 
 enum memory_order { memory_order_relaxed };
 
-template <class T> T atomic_load_explicit(const __lamplight::atomic<T>*, memory_order);
+template <class T> T atomic_load_explicit(const __lamplight::atomic<T>* at, memory_order) {
+  return at->value;
+}
 template <class T>
-void atomic_store_explicit(__lamplight::atomic<T>*, __lamplight::same_as<T>, memory_order);
+void atomic_store_explicit(__lamplight::atomic<T>* at, __lamplight::same_as<T> value,
+                           memory_order) {
+  at->value = value;
+}
 template <class T>
-bool atomic_compare_exchange_weak_explicit(__lamplight::atomic<T>*, T*, __lamplight::same_as<T>,
-                                           memory_order, memory_order);
-#define __LL_ATOMIC(name)                                                                     \
+bool atomic_compare_exchange_weak_explicit(__lamplight::atomic<T>* at, T* wanted,
+                                           __lamplight::same_as<T> value, memory_order,
+                                           memory_order) {
+  const bool is_it = at->value == *wanted;
+  *wanted = at->value;
+  if (is_it) at->value = value;
+  return is_it;
+}
+#define __LL_ATOMIC(name, changed)                                                            \
   template <class T>                                                                          \
-  T atomic_##name##_explicit(__lamplight::atomic<T>*, __lamplight::same_as<T>, memory_order);
-__LL_ATOMIC(exchange)
-__LL_ATOMIC(fetch_add)
-__LL_ATOMIC(fetch_sub)
-__LL_ATOMIC(fetch_and)
-__LL_ATOMIC(fetch_or)
-__LL_ATOMIC(fetch_xor)
-__LL_ATOMIC(fetch_min)
-__LL_ATOMIC(fetch_max)
+  T atomic_##name##_explicit(__lamplight::atomic<T>* at, __lamplight::same_as<T> value,       \
+                             memory_order) {                                                  \
+    const T old = at->value;                                                                  \
+    at->value = changed;                                                                      \
+    return old;                                                                               \
+  }
+__LL_ATOMIC(exchange, value)
+__LL_ATOMIC(fetch_add, old + value)
+__LL_ATOMIC(fetch_sub, old - value)
+__LL_ATOMIC(fetch_and, old & value)
+__LL_ATOMIC(fetch_or, old | value)
+__LL_ATOMIC(fetch_xor, old ^ value)
+__LL_ATOMIC(fetch_min, value < old ? value : old)
+__LL_ATOMIC(fetch_max, value > old ? value : old)
 #undef __LL_ATOMIC
 
 enum class mem_flags { mem_none, mem_device, mem_threadgroup, mem_texture };
-void threadgroup_barrier(mem_flags);
+inline void threadgroup_barrier(mem_flags) { __lamplight::barrier(); }
 void simdgroup_barrier(mem_flags);
 
 struct simd_vote {

@@ -30,6 +30,20 @@ inline float4 position(const given& from) {
   return float4{from.position[0], from.position[1], from.position[2], from.position[3]};
 }
 
+inline uint3 three_of(const unsigned* from) { return uint3{from[0], from[1], from[2]}; }
+inline uint3 local_of(const given& from) { return three_of(from.invocation); }
+inline uint3 group_of(const given& from) { return three_of(from.group); }
+inline uint3 groups_of(const given& from) { return three_of(from.groups); }
+inline uint3 size_of_group(const given& from) { return three_of(from.size); }
+inline uint3 global_of(const given& from) {
+  return group_of(from) * size_of_group(from) + local_of(from);
+}
+
+/// Fills memory of the workgroup with what no shader expects, before its first invocation runs.
+template <class T> inline void spoil(const given& from, T& memory) {
+  if (from.invocation[3] == 0) __builtin_memset(&memory, 0xa5, sizeof memory);
+}
+
 /// A value from the words of a location.
 template <class T> inline void take(T& to, const unsigned* words) {
   if constexpr (size_of<T> == 1) {

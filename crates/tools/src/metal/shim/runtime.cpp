@@ -1,7 +1,7 @@
 // The program that runs shaders: it answers requests on standard input until there are no more.
 //
 // Words of 32 bits, in the order of the machine. A request is the number of its words, then
-//   entry, stage (0 vertex, 1 fragment), words of locations each way,
+//   entry, stage (0 vertex, 1 fragment, 2 compute), words of locations each way,
 //   buffers:  n, then slot, bytes, and the bytes, filled up to whole words
 //   textures: n, then slot, shape, format, levels; of each level width, height, layers and texels,
 //             four words each
@@ -9,8 +9,10 @@
 //   vertices: n, then index, instance, words of locations
 //   quads:    n, then for each of four fragments position, whether it is of a front face, words of
 //             locations
+//   compute:  size of a workgroup and number of them, each in x, y and z
 // and the answer, for each vertex or fragment: position (of a vertex), or depth, whether it was
-// discarded, 0, 0; then the words of its locations. `program.rs` is the other end.
+// discarded, 0, 0; then the words of its locations. That of a compute stage has the bytes of all
+// buffers, each filled up to whole words. `compiled/mod.rs` is the other end.
 //
 // Textures are read as `crates/eval/src/machine/texture.rs` reads them; change both or none.
 #include <math.h>
@@ -134,6 +136,77 @@ void discard() {
 __attribute__((noinline)) void slope(const float* values, int count, int axis, float* to) {
   const lane* self = wait(__builtin_return_address(0), values, count);
   for (int i = 0; i < count; ++i) to[i] = self ? float(self->slopes[axis][i]) : 0.0f;
+}
+
+// ---- workgroups: invocations that take turns at barriers -----------------------------------
+
+/// An invocation of a workgroup. It runs by itself until a barrier, and waits there for the others.
+struct invocation {
+  ucontext_t context;
+  given in;
+  bool running;
+};
+
+/// As many as the largest workgroup so far had. They stay where they are.
+static invocation* invocations[1024];
+static int invocation_count = 0;
+static int current_invocation = -1;
+
+static void work() {
+  for (;;) {
+    invocation& self = *invocations[current_invocation];
+    result unused = {};
+    running->run(bound, self.in, unused);
+    self.running = false;
+    swapcontext(&self.context, &scheduler);
+  }
+}
+
+static void employ(int count) {
+  for (; invocation_count < count; ++invocation_count) {
+    invocation* made = (invocation*)calloc(1, sizeof(invocation));
+    getcontext(&made->context);
+    made->context.uc_stack.ss_sp = malloc(STACK);
+    made->context.uc_stack.ss_size = STACK;
+    makecontext(&made->context, work, 0);
+    invocations[invocation_count] = made;
+  }
+}
+
+void barrier() {
+  if (current_invocation < 0) return;
+  swapcontext(&invocations[current_invocation]->context, &scheduler);
+}
+
+/// Runs all invocations until the next barrier, or until they end. Gives how many still run.
+static int run_to_barrier(int count) {
+  int left = 0;
+  for (current_invocation = 0; current_invocation < count; ++current_invocation) {
+    invocation& self = *invocations[current_invocation];
+    if (!self.running) continue;
+    swapcontext(&scheduler, &self.context);
+    left += self.running;
+  }
+  current_invocation = -1;
+  return left;
+}
+
+static bool run_workgroup(const given& first, int count) {
+  for (int index = 0; index < count; ++index) {
+    invocation& self = *invocations[index];
+    const unsigned x = first.size[0], y = first.size[1];
+    self.in = first;
+    self.in.invocation[0] = unsigned(index) % x;
+    self.in.invocation[1] = unsigned(index) / x % y;
+    self.in.invocation[2] = unsigned(index) / x / y;
+    self.in.invocation[3] = unsigned(index);
+    self.running = true;
+  }
+  for (;;) {
+    const int left = run_to_barrier(count);
+    if (left == 0) return true;
+    if (left != count) return false;
+  }
 }
 
 // ---- textures -----------------------------------------------------------------------------
@@ -487,7 +560,7 @@ struct reader {
 static texture textures[SLOTS];
 static sampler_state samplers[SLOTS];
 
-static void read_buffers(reader& from) {
+static void read_buffers(reader& from, unsigned sizes[SLOTS]) {
   for (word left = from.one(); left > 0; --left) {
     const unsigned slot = from.slot();
     const word bytes = from.one();
@@ -495,6 +568,7 @@ static void read_buffers(reader& from) {
     void* data = aligned_alloc(16, (size_t(bytes) + 31) / 16 * 16);
     memcpy(data, from.some((size_t(bytes) + 3) / 4), bytes);
     bound.buffers[slot] = data;
+    sizes[slot] = bytes;
   }
 }
 
@@ -569,15 +643,38 @@ static void run_quads(reader& from, size_t in, size_t out) {
   }
 }
 
+static void run_grid(reader& from, const unsigned bytes[SLOTS]) {
+  given first = {};
+  for (unsigned& size : first.size) size = from.one();
+  for (unsigned& count : first.groups) count = from.one();
+  const size_t count = size_t(first.size[0]) * first.size[1] * first.size[2];
+  if (count == 0 || count > 1024) fail("a workgroup has no such size");
+  employ(int(count));
+  unsigned* at = first.group;
+  for (at[2] = 0; at[2] < first.groups[2]; ++at[2]) {
+    for (at[1] = 0; at[1] < first.groups[1]; ++at[1]) {
+      for (at[0] = 0; at[0] < first.groups[0]; ++at[0]) {
+        if (!run_workgroup(first, int(count))) fail("not all invocations reach a barrier");
+      }
+    }
+  }
+  for (int slot = 0; slot < SLOTS; ++slot) {
+    if (bound.buffers[slot]) answer(bound.buffers[slot], (size_t(bytes[slot]) + 3) / 4);
+  }
+}
+
 static void serve(reader from) {
   running = &entries[from.one()];
   const word stage = from.one(), in = from.one(), out = from.one();
   if (out > SLOTS) fail("there are too many locations");
-  read_buffers(from);
+  unsigned bytes[SLOTS] = {};
+  read_buffers(from, bytes);
   read_textures(from);
   read_samplers(from);
   if (stage == 0) {
     run_vertices(from, in, out);
+  } else if (stage == 2) {
+    run_grid(from, bytes);
   } else {
     run_quads(from, in, out);
   }

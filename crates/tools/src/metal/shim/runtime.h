@@ -37,6 +37,9 @@ unsigned depth(const texture* of, unsigned level);
 unsigned layers(const texture* of);
 unsigned levels(const texture* of);
 
+/// Waits for the other invocations of the workgroup.
+void barrier();
+
 /// How numbers change to the neighbour in x (axis 0) or y (axis 1).
 void slope(const float* values, int count, int axis, float* to);
 
@@ -55,6 +58,12 @@ struct bindings {
 
 /// What one vertex or fragment is given: words of its locations, and built-ins.
 struct given {
+  /// In a compute stage: the position in the group, and the index there.
+  unsigned invocation[4];
+  /// The position of the group, how many groups there are, and their size.
+  unsigned group[3];
+  unsigned groups[3];
+  unsigned size[3];
   const unsigned (*locations)[4];
   float position[4];
   unsigned front;

@@ -1,0 +1,127 @@
+//! Compiles compute entry points for all targets, and runs them on all executors.
+
+use std::collections::BTreeMap;
+
+use lamplight::bundle::{Conventions, Language, Target};
+use lamplight::compose::{Composed, lean};
+use lamplight::diagnostic::{Diagnostic, codes};
+use lamplight::execute::Session;
+use lamplight::execute::dispatch::{ComputeForm, ComputeStage, Dispatch, DispatchResult};
+use lamplight::execute::executors::{self, ExecutorEntry};
+use lamplight::execute::frame::{Buffers, EntryPoint};
+use lamplight::execute::shipped::Shipped;
+use lamplight::link::{Linker, TextForms, compile};
+use lamplight::validate::{Validated, validate};
+
+/// The targets that have compute stages.
+pub const TARGETS: [Target; 5] =
+    [Target::SPIRV, Target::WGSL, Target::GLSL450, Target::HLSL, Target::MSL];
+
+/// Executors that are left out: what wgpu writes for OpenGL by itself is no output of ours.
+const OTHERS: [&str; 1] = ["gl"];
+
+/// An entry point in every form, and what it is run with.
+pub struct Compiled {
+    pub validated: Validated,
+    pub entry: String,
+    pub buffers: Buffers,
+    pub groups: [u32; 3],
+    /// For each target its output, or why there is none.
+    pub outputs: BTreeMap<Target, Result<Shipped, Vec<Diagnostic>>>,
+}
+
+/// Compiles the entry point of a text.
+///
+/// # Errors
+/// The text's own.
+pub fn compiled(
+    text: String,
+    entry: &str,
+    conventions: Conventions,
+) -> Result<Compiled, Vec<Diagnostic>> {
+    let composed = Composed::of_text(Language::Wesl, None, text);
+    let lean = lean(&composed);
+    let validated = validate(&lean)?;
+    let output = |target: Target| {
+        let targets = [target];
+        let linker = Linker::with(&targets, conventions);
+        let text = TextForms { composed: &composed, lean: &lean };
+        let unit = compile(&text, entry, &targets, &linker)?.unit;
+        let artifact = unit.targets[target.name()].clone();
+        let (bytes, native) = (artifact.bytes.to_vec(), (*artifact.native).clone());
+        Ok(Shipped { target, bytes, native, reflection: (*unit.reflection).clone() })
+    };
+    let outputs = TARGETS.map(|target| (target, output(target))).into();
+    let (buffers, groups) = (Buffers::new(), [1; 3]);
+    Ok(Compiled { validated, entry: entry.to_owned(), buffers, groups, outputs })
+}
+
+/// An open executor.
+pub struct Opened {
+    pub entry: &'static ExecutorEntry,
+    pub form: ComputeForm,
+    session: Box<dyn Session>,
+}
+
+/// Opens every executor that has compute stages.
+///
+/// # Errors
+/// One of them is missing.
+pub fn opened() -> Result<Vec<Opened>, String> {
+    let wanted = executors::ALL.iter().filter(|one| !OTHERS.contains(&one.name));
+    wanted
+        .filter_map(|entry| Some((*entry, entry.compute?)))
+        .map(|(entry, form)| Ok(Opened { entry, form, session: entry.start()? }))
+        .collect()
+}
+
+impl Opened {
+    /// Runs all of them. `None` where there is no output for the executor's target.
+    pub fn run(&mut self, all: &[Compiled]) -> Vec<Option<DispatchResult>> {
+        let stage = |one: &Compiled| match self.form {
+            ComputeForm::Module => true,
+            ComputeForm::Output(target) => one.outputs[&target].is_ok(),
+        };
+        let have: Vec<&Compiled> = all.iter().filter(|one| stage(one)).collect();
+        let form = self.form;
+        let dispatches: Vec<Dispatch<'_>> =
+            have.iter().filter_map(|one| one.dispatch(form)).collect();
+        let mut results = self.session.dispatch(&dispatches).into_iter();
+        all.iter().map(|one| stage_of(one, form).then(|| results.next()).flatten()).collect()
+    }
+}
+
+fn stage_of(one: &Compiled, form: ComputeForm) -> bool {
+    one.dispatch(form).is_some()
+}
+
+impl Compiled {
+    fn dispatch(&self, form: ComputeForm) -> Option<Dispatch<'_>> {
+        let stage = match form {
+            ComputeForm::Module => ComputeStage::Module(EntryPoint {
+                module: &self.validated.module,
+                entry: &self.entry,
+            }),
+            ComputeForm::Output(target) => {
+                ComputeStage::Output(self.outputs[&target].as_ref().ok()?)
+            }
+        };
+        Some(Dispatch { stage, buffers: &self.buffers, groups: self.groups })
+    }
+
+    /// The output for an executor, as text for people.
+    pub fn output_text(&self, form: ComputeForm) -> String {
+        match form {
+            ComputeForm::Output(target) if target != Target::SPIRV => self.outputs[&target]
+                .as_ref()
+                .map(|one| one.text().into_owned())
+                .unwrap_or_default(),
+            _ => String::new(),
+        }
+    }
+}
+
+/// Whether an error only says that an executor lacks something.
+pub fn is_lack(error: &Diagnostic) -> bool {
+    error.code.name == codes::EXECUTOR_LACKS.name
+}
