@@ -16,12 +16,13 @@ use libtest_mimic::{Failed, Trial};
 use serde::Deserialize;
 
 type Outcome = Result<(), Failed>;
+type Case = (&'static str, fn() -> Outcome);
 
 /// The fewest issues that the table has. It grows, and shrinks only with what naga has repaired.
 const FEWEST: usize = 120;
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [(&str, fn() -> Outcome); 4] =
+    let cases: [Case; 4] =
         [("table", table), ("accepted", accepted), ("refused", refused), ("page", page)];
     cases.into_iter().map(|(name, case)| Trial::test(format!("naga::{name}"), case)).collect()
 }
