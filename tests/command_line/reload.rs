@@ -58,7 +58,7 @@ fn reloads(out: &str) -> Outcome {
 /// A bundle that cannot be read is not loaded, and the one in memory stays.
 fn damaged(package: &Package, out: &str, bundle: &mut Bundle) -> Outcome {
     let path = package.path(out);
-    let file = if path.is_dir() { path.join("manifest.json") } else { path };
+    let file = if path.is_dir() { path.join("index.bin") } else { path };
     let other = package.path("damaged");
     fs::write(&other, b"{ \"format\": ")?;
     fs::rename(&other, &file)?;

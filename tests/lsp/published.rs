@@ -57,6 +57,7 @@ const INVALID: &[(&str, &str)] = &[
     ("discard", "@vertex fn f() -> @builtin(position) vec4f { discard; return vec4f(); }"),
     ("barrier", "@fragment fn f() -> @location(0) vec4f { workgroupBarrier(); return vec4f(); }"),
     ("workgroup", "@compute @workgroup_size(0) fn f() {}"),
+    ("result", "@compute @workgroup_size(1) fn f() -> @location(0) f32 { return 1.0; }"),
     (
         "binding",
         "@group(0) @binding(0) var<uniform> a: f32;\n@group(0) @binding(0) var<uniform> b: f32;\n\
@@ -80,7 +81,6 @@ const INVALID: &[(&str, &str)] = &[
 
 /// Modules that naga accepts and browsers refuse, or that draw nothing. Each has a warning.
 const DOUBTFUL: &[(&str, &str)] = &[
-    ("result", "@compute @workgroup_size(1) fn f() -> @location(0) f32 { return 1.0; }"),
     (
         "memory",
         "var<workgroup> a: f32;\n@fragment fn f() -> @location(0) vec4f { return vec4f(a); }",

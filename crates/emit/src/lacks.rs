@@ -211,6 +211,13 @@ pub fn check_lacks(
         for span in columns::taken_from_values(module, &validated.info) {
             refuse(format!("target `hlsl`: {}", columns::TAKEN), span, "it is taken here");
         }
+        if counts_groups(module) {
+            refuse(
+                format!("target `hlsl`: {GROUP_COUNT}"),
+                group_count(composed),
+                "it is read here",
+            );
+        }
     }
     if wanted.contains(&Target::SPIRV) {
         for span in discards_in_continuing(module) {
@@ -218,6 +225,34 @@ pub fn check_lacks(
         }
     }
     if found.is_empty() { Ok(()) } else { Err(found) }
+}
+
+/// naga writes the index of the workgroup in its place.
+pub const GROUP_COUNT: &str =
+    "the language has no `num_workgroups`: pass the number in a uniform buffer";
+
+/// Whether some entry point reads the number of workgroups.
+pub fn counts_groups(module: &Module) -> bool {
+    entry_values(module).any(|(ty, binding)| {
+        let is_count = |binding: Option<&Binding>| {
+            matches!(binding, Some(Binding::BuiltIn(BuiltIn::NumWorkGroups)))
+        };
+        match &module.types[ty].inner {
+            TypeInner::Struct { members, span: _ } => {
+                members.iter().any(|member| is_count(member.binding.as_ref()))
+            }
+            _ => is_count(binding),
+        }
+    })
+}
+
+/// Where a text names the number of workgroups.
+fn group_count(composed: &Composed) -> Span {
+    let find = |name: &str| {
+        let start = composed.text.find(name)?;
+        Some(Span::new(u32::try_from(start).ok()?, u32::try_from(start + name.len()).ok()?))
+    };
+    ["num_workgroups", "gl_NumWorkGroups"].into_iter().find_map(find).unwrap_or_default()
 }
 
 const DISCARD: &str = "a loop cannot end an invocation in `continuing`: discard in its body";
@@ -436,13 +471,18 @@ fn image_kind(
     }
 }
 
-/// The built-in values of entry points that a version lacks.
-fn later_values(module: &Module, version: Version) -> impl Iterator<Item = (&'static str, Span)> {
-    let values = module.entry_points.iter().flat_map(|point| {
+/// The types and bindings of what enters and leaves entry points.
+fn entry_values(module: &Module) -> impl Iterator<Item = (Handle<Type>, Option<&Binding>)> {
+    module.entry_points.iter().flat_map(|point| {
         let Function { arguments, result, .. } = &point.function;
         let given = arguments.iter().map(|given| (given.ty, given.binding.as_ref()));
         given.chain(result.iter().map(|result| (result.ty, result.binding.as_ref())))
-    });
+    })
+}
+
+/// The built-in values of entry points that a version lacks.
+fn later_values(module: &Module, version: Version) -> impl Iterator<Item = (&'static str, Span)> {
+    let values = entry_values(module);
     let built_in = move |binding: Option<&Binding>| match binding {
         Some(Binding::BuiltIn(BuiltIn::SampleIndex)) => SAMPLE_ID.lacking(version),
         Some(Binding::BuiltIn(BuiltIn::SampleMask)) => SAMPLE_MASK.lacking(version),

@@ -6,7 +6,9 @@ use super::executor_failed;
 use super::frame::{Buffers, EntryPoint};
 use super::interpreter::eval_failed;
 use super::shipped::Shipped;
-use lamplight_bundle::{Binding, BindingKind, Target};
+use lamplight_bundle::Target;
+#[cfg(not(target_family = "wasm"))]
+use lamplight_bundle::{Binding, BindingKind};
 use lamplight_diagnostic::Diagnostic;
 use lamplight_eval::{Machine, Program, Resources};
 use lamplight_validate::info_of;
@@ -43,6 +45,7 @@ pub struct Dispatch<'a> {
 /// The storage buffers that an entry point may write to, as they are afterwards.
 pub type DispatchResult = Result<Buffers, Diagnostic>;
 
+#[cfg(not(target_family = "wasm"))]
 impl<'a> Dispatch<'a> {
     /// The entry point as the output of a target.
     ///
@@ -74,6 +77,7 @@ impl<'a> Dispatch<'a> {
 ///
 /// # Errors
 /// What it binds besides, which no executor gives to a compute stage.
+#[cfg(not(target_family = "wasm"))]
 pub(super) fn bound_buffers(
     shipped: &Shipped,
 ) -> Result<impl Iterator<Item = &Binding>, Diagnostic> {

@@ -220,6 +220,7 @@ impl Drawing<'_> {
         view.get(&place).or_else(|| item.buffers.get(&place)).or_else(|| self.buffers.get(&place))
     }
 
+    #[cfg(not(target_family = "wasm"))]
     pub(super) fn is_buffer(&self, place: BindingPlace) -> bool {
         let everywhere = self
             .views

@@ -2,7 +2,9 @@
 
 use super::emitted;
 use super::frame::EntryPoint;
-use lamplight_bundle::{BindingKind, Native, Reflection, Stage, Target, Varying};
+#[cfg(not(target_family = "wasm"))]
+use lamplight_bundle::{BindingKind, Stage};
+use lamplight_bundle::{Native, Reflection, Target, Varying};
 use lamplight_diagnostic::Diagnostic;
 use lamplight_emit::{self as emit, Emitted};
 use lamplight_link::Linker;
@@ -17,6 +19,7 @@ pub struct Shipped {
 }
 
 /// What the colour target of a shipped stage holds.
+#[cfg(not(target_family = "wasm"))]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ColorFormat {
     /// Bits of floats.
@@ -57,6 +60,7 @@ impl Shipped {
     ///
     /// # Errors
     /// A message about a type that no target exists for.
+    #[cfg(not(target_family = "wasm"))]
     pub(super) fn targets(&self) -> Result<Vec<ColorFormat>, String> {
         if self.reflection.stage != Stage::Fragment {
             return Ok(Vec::new());
@@ -91,6 +95,7 @@ impl Shipped {
     }
 
     /// Groups and bindings of its uniform buffers.
+    #[cfg(not(target_family = "wasm"))]
     pub(super) fn blocks(&self) -> impl Iterator<Item = (u32, u32)> {
         let blocks = self.reflection.bindings.iter().filter(|one| one.kind == BindingKind::Uniform);
         blocks.map(|one| (one.group, one.binding))

@@ -22,8 +22,8 @@ use lamplight_compose::Composed;
 use lamplight_emit as emit;
 use lamplight_emit::spirv::words;
 use lamplight_validate::{
-    Validated, check_switches, functions, guard, has_changed_shapes, info_of, is_bounded, is_small,
-    keeps_rules, may_alias, on_large_stack, parse_glsl, prepare_part,
+    Validated, check_switches, functions, guard, has_changed_shapes, has_lost_alignments, info_of,
+    is_bounded, is_small, keeps_rules, may_alias, on_large_stack, parse_glsl, prepare_part,
 };
 
 /// A unit in every target.
@@ -134,7 +134,10 @@ fn aliases(module: &Module, info: &ModuleInfo) -> bool {
 
 fn parse_recipe(outline: &Outline<'_>, text: &str) -> Result<Module, Reason> {
     match outline.language {
-        Language::Wesl => wgsl::parse_str(text).map_err(|_| Reason::Refused),
+        Language::Wesl => {
+            let module = wgsl::parse_str(text).map_err(|_| Reason::Refused)?;
+            if has_lost_alignments(text, &module) { Err(Reason::Refused) } else { Ok(module) }
+        }
         Language::Glsl => {
             let module = parse_glsl(outline.stage, text).map_err(|_| Reason::Refused)?;
             if keeps_rules(text, outline.stage) { Ok(module) } else { Err(Reason::Refused) }

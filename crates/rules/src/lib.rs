@@ -6,6 +6,7 @@ mod atomics;
 mod attributes;
 mod behaviour;
 mod constants;
+mod layout;
 mod memory;
 mod names;
 mod parse;
@@ -17,6 +18,7 @@ mod uniformity;
 use std::ops::Range;
 
 pub use constants::fold;
+pub use layout::{NestedAlignment, nested_alignments};
 use syntax::Directive;
 pub use syntax::Severity;
 pub use uniformity::Summary;

@@ -5,6 +5,7 @@
 //! ([`limits`]), and every call runs on a large stack with panics caught ([`guard`]).
 
 mod alias;
+mod alignments;
 mod atomics;
 mod bitcasts;
 mod browsers;
@@ -30,6 +31,7 @@ mod uses;
 mod words;
 
 pub use alias::{NamesGlobal, may_alias};
+pub use alignments::has_lost_alignments;
 pub use bitcasts::has_changed_shapes;
 pub use browsers::{has_lints, lint, lint_wgsl};
 pub use every::validate_every;
@@ -258,6 +260,9 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
         return Err(vec![inputs_of_compute(composed, name)]);
     }
     halves::refuse_exponents(composed, &module).map_err(|error| vec![error])?;
+    if composed.language == Language::Wesl {
+        alignments::refuse_lost_alignments(composed, &module).map_err(|error| vec![error])?;
+    }
     // A pointer that is placed no longer shows what else leads there.
     let original = match pointers::has_pointers_to_place(&module) {
         true => replace_by_placed(composed, &mut module).map_err(|error| vec![error])?,

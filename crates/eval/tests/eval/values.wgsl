@@ -143,6 +143,15 @@ override twice: f32 = scale * 2.0;
 // expect: overridden(3) = 12
 fn overridden(x: f32) -> f32 { return twice * x; }
 
-// error: atomics() = eval-unsupported
+// expect: atomics() = 11
 var<workgroup> counter: atomic<u32>;
-fn atomics() -> u32 { return atomicAdd(&counter, 1u); }
+fn atomics() -> u32 {
+    atomicStore(&counter, 4u);
+    let before = atomicAdd(&counter, 3u);
+    return before + atomicLoad(&counter);
+}
+// error: waits() = eval-barrier
+fn waits() -> u32 {
+    workgroupBarrier();
+    return 1u;
+}

@@ -11,7 +11,7 @@ pub use fold::fold;
 use super::names::{Module, is_of_subgroups};
 use super::syntax::{ExprId, ExprKind, Tree};
 use super::{Problem, Rule};
-use evaluate::Constants;
+pub use evaluate::Constants;
 use value::{Kind, Shape, Value};
 
 pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
