@@ -98,12 +98,12 @@ fn table() -> Outcome {
         return Err(format!("{what}: docs/naga.md says how to go through the table").into());
     }
     for input in &table.input {
-        let is_told = match input.verdict {
+        let is_complete = match input.verdict {
             Verdict::Repaired => input.by.as_ref().is_some_and(|by| root.join(by).is_file()),
             Verdict::Refused => !input.refused.is_empty() && input.code.is_some(),
             Verdict::Fixed => !input.targets.is_empty() && input.refused.is_empty(),
         };
-        if !is_told || input.about.is_empty() || input.issues.is_empty() {
+        if !is_complete || input.about.is_empty() || input.issues.is_empty() {
             return Err(format!("{}: the entry does not say all of its verdict", input.file).into());
         }
     }
@@ -209,8 +209,8 @@ fn refused() -> Outcome {
             let output = lamplight(&arguments, &folder())?;
             let text = printed(&output);
             let is_placed = text.contains(&format!("┌─ {}:", input.file));
-            let is_told = text.contains(&format!("error[{code}]")) && is_placed;
-            if output.status.success() || !is_told {
+            let is_right = text.contains(&format!("error[{code}]")) && is_placed;
+            if output.status.success() || !is_right {
                 let what = format!("expected `{code}` with a place for {target}");
                 return Err(format!("{}: {what}:\n{text}", input.file).into());
             }

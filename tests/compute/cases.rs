@@ -6,7 +6,9 @@ use std::fs;
 use std::path::Path;
 
 use lamplight::bundle::{BoundsChecks, Conventions};
+use lamplight::execute::dispatch::DispatchResult;
 use lamplight::execute::frame::Buffers;
+use libtest_mimic::Failed;
 
 use super::Outcome;
 use super::run::{self, Compiled};
@@ -17,61 +19,76 @@ type Wanted = BTreeMap<(u32, u32), Vec<Option<u32>>>;
 struct Case {
     name: String,
     compiled: Compiled,
-    wanted: Wanted,
+    expected: Expected,
     /// The targets that have no output, as the table says.
     refused: Vec<String>,
-    /// The executors whose driver is wrong, as the table says.
+}
+
+/// What the table says of the runs of a case.
+struct Expected {
+    wanted: Wanted,
+    /// The executors whose driver is wrong.
     skipped: Vec<String>,
+    /// The executors that lack something.
+    lacking: Vec<String>,
 }
 
 /// Every executor gives what the tables say.
 pub fn all() -> Outcome {
-    let mut cases = Vec::new();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compute/cases");
-    let mut files: Vec<_> = fs::read_dir(folder)?.collect::<Result<_, _>>()?;
-    files.sort_by_key(fs::DirEntry::path);
-    for file in files {
-        let path = file.path();
-        if path.extension().is_some_and(|extension| extension == "wesl") {
-            cases.push(read_case(&path)?);
-        }
-    }
-    let names: Vec<String> = cases.iter().map(|case| case.name.clone()).collect();
     let mut wrong = String::new();
-    for case in &cases {
-        for (target, output) in &case.compiled.outputs {
-            let is_refused = case.refused.iter().any(|name| name == target.name());
+    let (mut compiled, mut expected) = (Vec::new(), Vec::new());
+    for Case { name, compiled: one, expected: of, refused } in read_cases()? {
+        for (target, output) in &one.outputs {
+            let is_refused = refused.iter().any(|name| name == target.name());
             if output.is_err() != is_refused {
-                let _ = writeln!(wrong, "{}: {target}: {:?}", case.name, output.as_ref().err());
+                let _ = writeln!(wrong, "{name}: {target}: {:?}", output.as_ref().err());
             }
         }
+        compiled.push(one);
+        expected.push((name, of));
     }
-    let (compiled, expected): (Vec<Compiled>, Vec<_>) =
-        cases.into_iter().map(|case| (case.compiled, (case.wanted, case.skipped))).unzip();
     let mut ran = 0;
     for mut executor in run::opened()? {
         let results = executor.run(&compiled);
-        for (index, result) in results.into_iter().enumerate() {
-            let (wanted, skipped) = &expected[index];
-            let name = executor.entry.name;
-            let what = match result {
-                None => continue,
-                Some(Err(error)) if run::is_lack(&error) => continue,
-                _ if skipped.iter().any(|one| one == name) => continue,
-                Some(Err(error)) => error.message,
-                Some(Ok(found)) => difference(wanted, &found),
+        for ((result, (case, of)), one) in results.into_iter().zip(&expected).zip(&compiled) {
+            let Some(what) = result.and_then(|result| of.compare(executor.entry.name, result))
+            else {
+                continue;
             };
             ran += 1;
             if !what.is_empty() {
-                let text = compiled[index].output_text(executor.form);
-                let _ = writeln!(wrong, "{} on {name}: {what}\n{text}", names[index]);
+                let (name, text) = (executor.entry.name, one.output_text(executor.form));
+                let _ = writeln!(wrong, "{case} on {name}: {what}\n{text}");
             }
         }
     }
-    println!("{} cases, {ran} runs", names.len());
+    println!("{} cases, {ran} runs", expected.len());
     match wrong.is_empty() {
         true => Ok(()),
         false => Err(wrong.into()),
+    }
+}
+
+fn read_cases() -> Result<Vec<Case>, Failed> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compute/cases");
+    let mut files: Vec<_> = fs::read_dir(folder)?.collect::<Result<_, _>>()?;
+    files.sort_by_key(fs::DirEntry::path);
+    let paths = files.iter().map(fs::DirEntry::path);
+    let cases = paths.filter(|path| path.extension().is_some_and(|end| end == "wesl"));
+    Ok(cases.map(|path| read_case(&path)).collect::<Result<_, String>>()?)
+}
+
+impl Expected {
+    /// What is wrong with a run; nothing if all is as wanted. `None` for a run that does not count.
+    fn compare(&self, executor: &str, result: DispatchResult) -> Option<String> {
+        let is_in = |list: &[String]| list.iter().any(|one| one == executor);
+        match result {
+            Err(error) if run::is_lack(&error) && is_in(&self.lacking) => None,
+            Ok(_) if is_in(&self.lacking) => Some("the executor lacks nothing any more".to_owned()),
+            _ if is_in(&self.skipped) => None,
+            Err(error) => Some(error.message),
+            Ok(found) => Some(difference(&self.wanted, &found)),
+        }
     }
 }
 
@@ -125,13 +142,8 @@ fn read_case(path: &Path) -> Result<Case, String> {
     if wanted.is_empty() {
         return Err(format!("{name}: nothing is expected"));
     }
-    Ok(Case {
-        name: name.clone(),
-        compiled,
-        wanted,
-        refused: list("refused"),
-        skipped: list("skipped"),
-    })
+    let expected = Expected { wanted, skipped: list("skipped"), lacking: list("lacking") };
+    Ok(Case { refused: list("refused"), name, compiled, expected })
 }
 
 /// The words of numbers. Floats are `f32`, and integers 32 bits of either sign. The text `?` stands

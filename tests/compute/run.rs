@@ -78,21 +78,11 @@ pub fn opened() -> Result<Vec<Opened>, String> {
 impl Opened {
     /// Runs all of them. `None` where there is no output for the executor's target.
     pub fn run(&mut self, all: &[Compiled]) -> Vec<Option<DispatchResult>> {
-        let stage = |one: &Compiled| match self.form {
-            ComputeForm::Module => true,
-            ComputeForm::Output(target) => one.outputs[&target].is_ok(),
-        };
-        let have: Vec<&Compiled> = all.iter().filter(|one| stage(one)).collect();
-        let form = self.form;
-        let dispatches: Vec<Dispatch<'_>> =
-            have.iter().filter_map(|one| one.dispatch(form)).collect();
-        let mut results = self.session.dispatch(&dispatches).into_iter();
-        all.iter().map(|one| stage_of(one, form).then(|| results.next()).flatten()).collect()
+        let dispatches: Vec<_> = all.iter().map(|one| one.dispatch(self.form)).collect();
+        let there: Vec<Dispatch<'_>> = dispatches.iter().flatten().copied().collect();
+        let mut results = self.session.dispatch(&there).into_iter();
+        dispatches.iter().map(|one| one.and_then(|_| results.next())).collect()
     }
-}
-
-fn stage_of(one: &Compiled, form: ComputeForm) -> bool {
-    one.dispatch(form).is_some()
 }
 
 impl Compiled {

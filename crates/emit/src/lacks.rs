@@ -248,8 +248,14 @@ pub fn counts_groups(module: &Module) -> bool {
 
 /// Where a text names the number of workgroups.
 fn group_count(composed: &Composed) -> Span {
+    let is_word = |c: char| c == '_' || c.is_alphanumeric();
     let find = |name: &str| {
-        let start = composed.text.find(name)?;
+        let is_whole = |at: usize| {
+            let (before, after) = (&composed.text[..at], &composed.text[at + name.len()..]);
+            !before.ends_with(is_word) && !after.starts_with(is_word)
+        };
+        let mut found = composed.text.match_indices(name).map(|(at, _)| at);
+        let start = found.find(|at| is_whole(*at))?;
         Some(Span::new(u32::try_from(start).ok()?, u32::try_from(start + name.len()).ok()?))
     };
     ["num_workgroups", "gl_NumWorkGroups"].into_iter().find_map(find).unwrap_or_default()

@@ -1,7 +1,7 @@
 //! Layouts of memory that a workgroup shares, in SPIR-V. Only buffers have strides and offsets there
 //! (VUID-StandaloneSpirv-None-10684), and naga writes them for every type. Types that no buffer has
-//! lose them. A type that a buffer has too gets a twin without them, and values between the two are
-//! taken apart and put together.
+//! lose them. For a type that a buffer has too, a second one is declared without them, its bare type,
+//! and values that go from one to the other are taken apart and put together.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,13 +17,16 @@ const LAYOUT: [u32; 5] = [4, 5, 6, 7, 35];
 /// The word of the header that says how many ids there are.
 const BOUND: usize = 3;
 
+/// The most parts of a value that is put together: an instruction has at most 65,535 words.
+const MOST_PARTS: u32 = 65_532;
+
 /// The types of the parts of arrays and structures.
 type Parts = BTreeMap<u32, Vec<u32>>;
 
 /// The module without layouts in what a workgroup shares.
 ///
 /// # Errors
-/// The length of an array is not known.
+/// The length of an array is not known, or too large for its elements to be taken apart.
 pub fn without_layouts(words: &[u32]) -> Result<Vec<u32>, String> {
     let types = Types::of(words);
     if types.workgroup.is_empty() {
@@ -31,13 +34,13 @@ pub fn without_layouts(words: &[u32]) -> Result<Vec<u32>, String> {
     }
     let mut out = words.get(..HEADER_WORDS).ok_or("the module is too short")?.to_vec();
     let mut next = out[BOUND];
-    let twins = types.in_both().into_iter().map(|ty| {
+    let bare = types.in_both().into_iter().map(|ty| {
         next += 2;
-        (ty, Twin { ty: next - 2, zero: next - 1 })
+        (ty, BareType { ty: next - 2, zero: next - 1 })
     });
-    let twins = twins.collect();
+    let bare = bare.collect();
     out[BOUND] = next;
-    let mut writer = Writer { types, twins, values: BTreeMap::new(), places: BTreeMap::new(), out };
+    let mut writer = Writer { types, bare, values: BTreeMap::new(), places: BTreeMap::new(), out };
     for instruction in instructions(words) {
         writer.write(instruction)?;
     }
@@ -102,8 +105,14 @@ impl Types {
     fn parts_of(&self, ty: u32) -> Result<Vec<u32>, String> {
         let parts = self.parts.get(&ty).ok_or("a type has no parts")?;
         let Some(count) = self.counts.get(&ty) else { return Ok(parts.clone()) };
-        let length = self.lengths.get(count).ok_or("an array has no length")?;
-        Ok(vec![parts[0]; *length as usize])
+        let length = *self.lengths.get(count).ok_or("an array has no length")?;
+        match length <= MOST_PARTS {
+            true => Ok(vec![parts[0]; length as usize]),
+            false => Err(format!(
+                "an array of {length} elements is copied between a buffer and workgroup memory, and \
+                 {MOST_PARTS} can be: copy its elements in a loop"
+            )),
+        }
     }
 }
 
@@ -118,7 +127,7 @@ fn reach(parts: &Parts, ty: u32, found: &mut BTreeSet<u32>) {
 
 /// What a workgroup has in the place of a type that a buffer has.
 #[derive(Clone, Copy)]
-struct Twin {
+struct BareType {
     ty: u32,
     /// The constant that is all zeros.
     zero: u32,
@@ -127,7 +136,7 @@ struct Twin {
 struct Writer {
     types: Types,
     /// By the types with a layout.
-    twins: BTreeMap<u32, Twin>,
+    bare: BTreeMap<u32, BareType>,
     /// Constants that are all zeros, with their types.
     values: BTreeMap<u32, u32>,
     /// The types of what pointers to a workgroup's memory lead to, by the pointers.
@@ -149,27 +158,27 @@ impl Writer {
         match (op, words) {
             (op::DECORATE, [_, ty, kind, ..]) | (op::MEMBER_DECORATE, [_, ty, _, kind, ..])
                 if self.is_of_workgroup_alone(*ty) && LAYOUT.contains(kind) => {}
-            (op::TYPE_ARRAY | op::TYPE_STRUCT, [_, ty, ..]) if self.twins.contains_key(ty) => {
+            (op::TYPE_ARRAY | op::TYPE_STRUCT, [_, ty, ..]) if self.bare.contains_key(ty) => {
                 self.out.extend_from_slice(words);
-                self.declare_twin(*ty, words);
+                self.declare_bare(*ty, words);
             }
             (op::TYPE_POINTER, [first, id, WORKGROUP, pointee]) => {
-                self.out.extend([*first, *id, WORKGROUP, self.twin(*pointee)]);
+                self.out.extend([*first, *id, WORKGROUP, self.bare_type(*pointee)]);
             }
             (op::CONSTANT_NULL, [_, ty, id]) => {
                 self.values.insert(*id, *ty);
                 self.out.extend_from_slice(words);
             }
-            (op::LOAD, [first, ty, id, place, rest @ ..]) if self.has_twin(*place) => {
+            (op::LOAD, [first, ty, id, place, rest @ ..]) if self.is_bare_place(*place) => {
                 let loaded = self.fresh();
-                self.out.extend([*first, self.twin(*ty), loaded, *place]);
+                self.out.extend([*first, self.bare_type(*ty), loaded, *place]);
                 self.out.extend_from_slice(rest);
                 self.copy(*ty, loaded, Some(*id), false)?;
             }
-            (op::STORE, [first, place, value, rest @ ..]) if self.has_twin(*place) => {
+            (op::STORE, [first, place, value, rest @ ..]) if self.is_bare_place(*place) => {
                 let ty = self.places[place];
                 let stored = match self.values.contains_key(value) {
-                    true => self.twins[&ty].zero,
+                    true => self.bare[&ty].zero,
                     false => self.copy(ty, *value, None, true)?,
                 };
                 self.out.extend([*first, *place, stored]);
@@ -184,12 +193,12 @@ impl Writer {
         self.types.workgroup.contains(&ty) && !self.types.buffers.contains(&ty)
     }
 
-    fn has_twin(&self, place: u32) -> bool {
-        self.places.get(&place).is_some_and(|ty| self.twins.contains_key(ty))
+    fn is_bare_place(&self, place: u32) -> bool {
+        self.places.get(&place).is_some_and(|ty| self.bare.contains_key(ty))
     }
 
-    fn twin(&self, ty: u32) -> u32 {
-        self.twins.get(&ty).map_or(ty, |twin| twin.ty)
+    fn bare_type(&self, ty: u32) -> u32 {
+        self.bare.get(&ty).map_or(ty, |bare| bare.ty)
     }
 
     fn fresh(&mut self) -> u32 {
@@ -197,32 +206,32 @@ impl Writer {
         self.out[BOUND] - 1
     }
 
-    fn declare_twin(&mut self, ty: u32, words: &[u32]) {
-        let Twin { ty: twin, zero } = self.twins[&ty];
+    fn declare_bare(&mut self, ty: u32, words: &[u32]) {
+        let BareType { ty: bare, zero } = self.bare[&ty];
         let mut made = words.to_vec();
-        made[1] = twin;
+        made[1] = bare;
         for (part, wanted) in made[2..].iter_mut().zip(&self.types.parts[&ty]) {
-            *part = self.twins.get(wanted).map_or(*wanted, |twin| twin.ty);
+            *part = self.bare.get(wanted).map_or(*wanted, |bare| bare.ty);
         }
         self.out.append(&mut made);
-        self.out.extend([first_word(op::CONSTANT_NULL, 3), twin, zero]);
+        self.out.extend([first_word(op::CONSTANT_NULL, 3), bare, zero]);
     }
 
-    /// A value of a type as one of its twin, or the other way.
+    /// A value of a type as one of its bare type, or the other way.
     fn copy(
         &mut self,
         ty: u32,
         value: u32,
         into: Option<u32>,
-        to_twin: bool,
+        to_bare: bool,
     ) -> Result<u32, String> {
         let mut made = Vec::new();
         for (index, part) in self.types.parts_of(ty)?.into_iter().enumerate() {
-            let (from, id) = (if to_twin { part } else { self.twin(part) }, self.fresh());
+            let (from, id) = (if to_bare { part } else { self.bare_type(part) }, self.fresh());
             let word = first_word(op::COMPOSITE_EXTRACT, 5);
             self.out.extend([word, from, id, value, index as u32]);
-            made.push(match self.twins.contains_key(&part) {
-                true => self.copy(part, id, None, to_twin)?,
+            made.push(match self.bare.contains_key(&part) {
+                true => self.copy(part, id, None, to_bare)?,
                 false => id,
             });
         }
@@ -230,7 +239,7 @@ impl Writer {
             Some(id) => id,
             None => self.fresh(),
         };
-        let (ty, length) = (if to_twin { self.twin(ty) } else { ty }, made.len() + 3);
+        let (ty, length) = (if to_bare { self.bare_type(ty) } else { ty }, made.len() + 3);
         self.out.extend([first_word(op::COMPOSITE_CONSTRUCT, length), ty, id]);
         self.out.append(&mut made);
         Ok(id)
@@ -279,5 +288,20 @@ mod tests {
         let (decorated, shared) = decorated_and_shared(&without_layouts(&words).unwrap());
         assert!(decorated.is_disjoint(&shared), "{decorated:?} {shared:?}");
         assert!(!decorated.is_empty() && !shared.is_empty());
+    }
+
+    #[test]
+    fn arrays_that_no_instruction_holds_are_refused() {
+        for (length, is_refused) in [(65_532, false), (65_533, true)] {
+            let module = naga::front::wgsl::parse_str(&format!(
+                "var<workgroup> own: array<f32, {length}>;
+                 @group(0) @binding(0) var<storage, read_write> buffer: array<f32, {length}>;
+                 @compute @workgroup_size(1) fn f() {{ own = buffer; }}",
+            ));
+            let module = module.unwrap();
+            let info = info_unchecked(&module).unwrap();
+            let words = write_vec(&module, &info, &Options::default(), None).unwrap();
+            assert_eq!(without_layouts(&words).is_err(), is_refused, "{length}");
+        }
     }
 }

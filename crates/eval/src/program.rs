@@ -177,16 +177,19 @@ impl Program {
             .map(|(index, function)| (FunctionId(index as u32), function))
     }
 
-    /// The slots of private variables, and those of their initial values. `None` if the initial
-    /// value is zero.
-    pub(super) fn privates(
+    /// The slots of the variables that a call begins with, and those of their initial values. `None`
+    /// if the initial value is zero. A function that runs alone is a workgroup of its own; others
+    /// keep what their workgroup shares.
+    pub(super) fn initial_values(
         &self,
+        is_alone: bool,
     ) -> impl Iterator<Item = (std::ops::Range<usize>, Option<std::ops::Range<usize>>)> {
         let range = |slot: u32, n: u32| slot as usize..(slot + n) as usize;
         self.globals.iter().filter_map(move |global| match global.role {
             GlobalRole::Private(from) => {
                 Some((range(global.slot, global.slots), from.map(|from| range(from, global.slots))))
             }
+            GlobalRole::Workgroup if is_alone => Some((range(global.slot, global.slots), None)),
             _ => None,
         })
     }

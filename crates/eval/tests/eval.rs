@@ -9,6 +9,7 @@
 
 mod built_ins;
 mod constants;
+mod dispatch;
 mod filters;
 mod library;
 mod lockstep;
@@ -45,6 +46,7 @@ pub fn tests() -> Vec<Trial> {
     tests.extend(filters::tests());
     tests.extend(library::tests());
     tests.extend(lockstep::tests());
+    tests.extend(dispatch::tests());
     tests.extend(machine::tests());
     tests.extend(speed::tests());
     tests.extend(sweeps::tests());

@@ -2,7 +2,7 @@
 //! types: a structure that has one is aligned to it wherever it is a member ("Alignment and Size" in
 //! the specification), and naga aligns it to its types alone.
 
-use naga::{Module, TypeInner};
+use naga::{AddressSpace, Handle, Module, Type, TypeInner};
 
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, codes};
@@ -36,11 +36,32 @@ fn first_lost(text: &str, module: &Module) -> Option<NestedAlignment> {
 /// Whether naga has put a member, or the end of its structure, where the alignment does not allow it.
 fn is_lost(nested: &NestedAlignment, module: &Module) -> bool {
     let NestedAlignment { structure, member, name: _, place: _, alignment } = nested;
-    module.types.iter().any(|(_, ty)| match &ty.inner {
+    let is_off = |at: u32| !at.is_multiple_of(*alignment);
+    module.types.iter().any(|(handle, ty)| match &ty.inner {
         TypeInner::Struct { members, span } if ty.name.as_deref() == Some(structure) => {
-            let is_off = |at: u32| !at.is_multiple_of(*alignment);
-            members.get(*member).is_some_and(|found| is_off(found.offset)) || is_off(*span)
+            let is_moved = members.get(*member).is_some_and(|found| is_off(found.offset));
+            (is_moved || is_off(*span)) && is_in_buffer(module, handle)
         }
         _ => false,
     })
+}
+
+/// Whether a buffer has values of a type. Elsewhere, nobody knows where members lie.
+fn is_in_buffer(module: &Module, wanted: Handle<Type>) -> bool {
+    module.global_variables.iter().any(|(_, variable)| {
+        matches!(variable.space, AddressSpace::Uniform | AddressSpace::Storage { access: _ })
+            && has_type(module, variable.ty, wanted)
+    })
+}
+
+fn has_type(module: &Module, ty: Handle<Type>, wanted: Handle<Type>) -> bool {
+    ty == wanted
+        || match &module.types[ty].inner {
+            TypeInner::Array { base, size: _, stride: _ }
+            | TypeInner::BindingArray { base, size: _ } => has_type(module, *base, wanted),
+            TypeInner::Struct { members, span: _ } => {
+                members.iter().any(|member| has_type(module, member.ty, wanted))
+            }
+            _ => false,
+        }
 }

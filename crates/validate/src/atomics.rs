@@ -10,7 +10,7 @@ use naga::{
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, codes};
 
-/// Refuses the first value of a module that has an atomic in it.
+/// Refuses loads of structures and arrays that have atomics in them.
 pub fn refuse_atomic_values(
     composed: &Composed,
     module: &Module,

@@ -10,8 +10,8 @@ use lamplight_rules::{Place, parts};
 const MOST_PARTS: usize = 512;
 const LONGEST: usize = 1 << 16;
 
-/// The statement, or the value or the type of a declaration, that gives an error. `message` gives the one of a
-/// text.
+/// The statement, or the value or the type of a declaration, that gives an error. `message` gives the
+/// error of a text.
 pub fn place_of_error(
     text: &str,
     message: &dyn Fn(&str) -> Option<String>,

@@ -132,7 +132,7 @@ impl<'p> Batch<'p> {
 
     /// Sets private variables to their initial values.
     fn begin(&mut self) {
-        for (slots, from) in self.machine.program().privates() {
+        for (slots, from) in self.machine.program().initial_values(true) {
             match from {
                 Some(from) => self.memory.copy_within(from, slots.start),
                 None => self.memory[slots].fill([0.0; LANES]),

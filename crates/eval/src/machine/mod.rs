@@ -172,7 +172,7 @@ impl<'p, N: Number> Machine<'p, N> {
         let program = self.program;
         let function = callable_function(program, id, arguments.len())?;
         self.check_buffers(function)?;
-        begin_lane(program, &mut self.lane);
+        begin_lane(program, &mut self.lane, true);
         place_arguments(&mut self.lane, function, arguments);
         self.run(function.entry)
     }
@@ -197,7 +197,7 @@ impl<'p, N: Number> Machine<'p, N> {
                 .map(|(kind, word)| slot_from_word::<N>(*kind, *word)),
         );
         self.check_buffers(function)?;
-        begin_lane(self.program, &mut self.lane);
+        begin_lane(self.program, &mut self.lane, true);
         place_arguments(&mut self.lane, function, &self.words);
         self.run(function.entry)?;
         result.clear();
@@ -216,6 +216,14 @@ impl<'p, N: Number> Machine<'p, N> {
         (self.lane.pc, self.lane.trips, self.lane.killed) = (entry, 0, false);
         self.lane.steps = 0;
         self.lane.calls.clear();
+        match self.advance()? {
+            true => Ok(()),
+            false => Err(needs_workgroup(self.program, self.lane.pc)),
+        }
+    }
+
+    /// Runs the single lane until it ends (`true`) or has passed a barrier.
+    fn advance(&mut self) -> Result<bool, Error> {
         let env = Env {
             program: self.program,
             bound: &self.resolved,
@@ -223,9 +231,9 @@ impl<'p, N: Number> Machine<'p, N> {
             quad: false,
         };
         match run_lane(env, &mut self.lane, &mut self.watch)? {
-            LaneStop::Done => Ok(()),
+            LaneStop::Done => Ok(true),
+            LaneStop::Barrier => Ok(false),
             LaneStop::Quad => Err(needs_quad(self.program, self.lane.pc)),
-            LaneStop::Barrier => Err(needs_workgroup(self.program, self.lane.pc)),
         }
     }
 
@@ -307,9 +315,9 @@ fn callable_function(program: &Program, id: FunctionId, given: usize) -> Result<
     Ok(function)
 }
 
-/// Sets private variables to their initial values.
-fn begin_lane<N: Number>(program: &Program, lane: &mut Lane<N>) {
-    for (slots, from) in program.privates() {
+/// Sets variables to their initial values: also those of the workgroup, if the lane runs alone.
+fn begin_lane<N: Number>(program: &Program, lane: &mut Lane<N>, is_alone: bool) {
+    for (slots, from) in program.initial_values(is_alone) {
         match from {
             Some(from) => lane.memory.copy_within(from, slots.start),
             None => lane.memory[slots].fill(N::default()),
@@ -538,7 +546,7 @@ impl<N: Number> Machine<'_, N> {
         for (lane, arguments) in lanes.iter_mut().zip(arguments) {
             let function = callable_function(program, id, arguments.len())?;
             self.check_buffers(function)?;
-            begin_lane(program, lane);
+            begin_lane(program, lane, true);
             place_arguments(lane, function, arguments);
             (lane.pc, lane.trips, lane.killed) = (function.entry, 0, false);
             lane.steps = 0;

@@ -5,8 +5,8 @@
 //! of its own. What all invocations share is copied from lane to lane.
 
 use super::{
-    Env, Lane, LaneStop, Machine, barrier_span, begin_lane, callable_function, needs_quad,
-    place_arguments, run_lane, slot_from_word, waiting_position, word_from_slot,
+    Lane, Machine, barrier_span, begin_lane, callable_function, place_arguments, slot_from_word,
+    waiting_position, word_from_slot,
 };
 use crate::error::Error;
 use crate::layout::{MAX_SLOTS, encode_buffer};
@@ -42,7 +42,8 @@ impl<N: Number> Machine<'_, N> {
     /// loops, which each invocation counts by itself.
     ///
     /// # Errors
-    /// Those of [`Self::call`]; `eval-barrier` where not all invocations reach the same barrier.
+    /// Those of [`Self::call`]; `eval-barrier` where not all invocations reach the same barrier;
+    /// `eval-unsupported` for a built-in value that is not computed here, such as those of subgroups.
     pub fn dispatch(&mut self, id: FunctionId, groups: [u32; 3]) -> Result<(), Error> {
         let program = self.program;
         let given = program.signature(id).map_or(0, |function| function.arguments.len());
@@ -52,6 +53,7 @@ impl<N: Number> Machine<'_, N> {
             return Err(Error::new(codes::EVAL_ARGUMENTS, message));
         };
         self.check_buffers(function)?;
+        check_inputs(function, &Invocation { groups, size, group: [0; 3], index: 0 })?;
         let call = ComputeCall { function, groups, size, shared: self.shared_slots() };
         self.lane.steps = 0;
         let [x, y, z] = groups;
@@ -131,7 +133,7 @@ impl<N: Number> Machine<'_, N> {
 
     /// Makes an invocation ready to run on the single lane.
     fn begin(&mut self, function: &Function, at: &Invocation) {
-        begin_lane(self.program, &mut self.lane);
+        begin_lane(self.program, &mut self.lane, false);
         let words = argument_words(&function.inputs, at);
         let arguments: Vec<N> = function
             .arguments
@@ -142,21 +144,6 @@ impl<N: Number> Machine<'_, N> {
         place_arguments(&mut self.lane, function, &arguments);
         (self.lane.pc, self.lane.trips, self.lane.killed) = (function.entry, 0, false);
         self.lane.calls.clear();
-    }
-
-    /// Runs the single lane until it ends (`true`) or has passed a barrier.
-    fn advance(&mut self) -> Result<bool, Error> {
-        let env = Env {
-            program: self.program,
-            bound: &self.resolved,
-            loop_limit: self.loop_limit,
-            quad: false,
-        };
-        match run_lane(env, &mut self.lane, &mut self.watch)? {
-            LaneStop::Done => Ok(true),
-            LaneStop::Barrier => Ok(false),
-            LaneStop::Quad => Err(needs_quad(self.program, self.lane.pc)),
-        }
     }
 
     /// Runs an invocation on from its barrier. Gives its lane back if it has passed another one.
@@ -197,25 +184,32 @@ fn copy_shared<N: Number>(from: &Lane<N>, to: &mut Lane<N>, shared: &[Range<usiz
     to.steps = from.steps;
 }
 
+/// Refuses inputs that have no value here.
+fn check_inputs(function: &Function, at: &Invocation) -> Result<(), Error> {
+    match function.inputs.iter().find(|input| at.value(input).is_none()) {
+        None => Ok(()),
+        Some(other) => Err(Error::unsupported(format!("the input {other:?}"))),
+    }
+}
+
 /// The word of each argument slot.
 fn argument_words(inputs: &[Option<Binding>], at: &Invocation) -> Vec<u32> {
     let mut words = Vec::with_capacity(inputs.len());
     for (index, input) in inputs.iter().enumerate() {
         let before = inputs[..index].iter().filter(|other| *other == input).count();
-        let value = match input {
-            Some(Binding::BuiltIn(built_in)) => at.built_in(*built_in),
-            _ => [0; 3],
-        };
-        words.push(value.get(before).copied().unwrap_or(0));
+        let value = at.value(input).and_then(|value| value.get(before).copied());
+        words.push(value.unwrap_or(0));
     }
     words
 }
 
 impl Invocation {
-    fn built_in(&self, built_in: BuiltIn) -> [u32; 3] {
+    /// What an input holds; `None` for what is not computed here.
+    fn value(&self, input: &Option<Binding>) -> Option<[u32; 3]> {
+        let Some(Binding::BuiltIn(built_in)) = input else { return None };
         let local = self.local();
         let three = |component: &dyn Fn(usize) -> u32| [0, 1, 2].map(component);
-        match built_in {
+        Some(match built_in {
             BuiltIn::GlobalInvocationId => {
                 three(&|i| self.group[i].wrapping_mul(self.size[i]).wrapping_add(local[i]))
             }
@@ -224,8 +218,8 @@ impl Invocation {
             BuiltIn::WorkGroupId => self.group,
             BuiltIn::WorkGroupSize => self.size,
             BuiltIn::NumWorkGroups => self.groups,
-            _ => [0; 3],
-        }
+            _ => return None,
+        })
     }
 
     fn local(&self) -> [u32; 3] {

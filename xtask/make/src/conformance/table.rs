@@ -84,11 +84,12 @@ fn expected_of(suite: &str, commit: &str) -> Result<Option<(String, [usize; 3])>
     for line in EXPECTED.lines().filter(|line| !line.starts_with('#')) {
         let words: Vec<&str> = line.split_whitespace().collect();
         let [name, at, counts @ ..] = words.as_slice() else { continue };
-        let is_commit = *at == "any" || commit.starts_with(at);
-        if !is_commit
-            || (*name != suite && suite != "folder")
-            || (*at == "any" && suite == "folder")
-        {
+        let is_commit = commit.starts_with(at);
+        let is_it = match suite {
+            "folder" => is_commit,
+            _ => *name == suite && (*at == "any" || is_commit),
+        };
+        if !is_it {
             continue;
         }
         let wrong =
