@@ -15,6 +15,7 @@ mod text;
 use std::collections::HashMap;
 use std::num::TryFromIntError;
 
+use super::layout::MOST_GROUP_BYTES;
 pub use join::{Found, hole_bytes, join};
 
 /// A piece as the file stores it: its bytes, and if it has holes, a bit for each of its words that is
@@ -59,17 +60,20 @@ pub struct PieceTable {
 pub type List = Vec<u32>;
 
 impl PieceTable {
-    /// Splits an output. `None` if it has no pieces, or if a list would not be smaller: then it is
-    /// stored as it is. `target` is the index of its target.
+    /// Splits an output. `None` if it has no pieces, if a list would not be smaller, or if a piece
+    /// would be too large for a group: then it is stored as it is. `target` is the index of its
+    /// target.
     ///
     /// # Errors
     /// There are more than 2^32 pieces.
     pub fn split(&mut self, bytes: &[u8], target: u32) -> Result<Option<List>, TryFromIntError> {
         let (mut list, mut key, mut failed) = (List::new(), Vec::new(), Ok(()));
+        let mut is_small = true;
         let mut take = |piece: &[u8], holes: &[u8], values: &[u32]| {
             key.clear();
             key.extend_from_slice(piece);
             key.extend_from_slice(holes);
+            is_small &= key.len() <= MOST_GROUP_BYTES;
             match self.number(&mut key, piece.len(), values.len(), target) {
                 Ok(number) => list.push(number),
                 Err(error) => failed = Err(error),
@@ -81,7 +85,7 @@ impl PieceTable {
             false => text::split(bytes, &mut take),
         };
         failed?;
-        if is_split && list.len() * 4 < bytes.len() {
+        if is_split && is_small && list.len() * 4 < bytes.len() {
             return Ok(Some(list));
         }
         self.forget(&list);

@@ -90,6 +90,18 @@ fn damaged_modules_are_not_split() {
     assert_eq!(table.split(&[], 0), Ok(None));
 }
 
+/// The bits of its holes would make this function larger than a group.
+#[test]
+fn a_piece_that_no_group_takes_is_not_split() {
+    let instructions = MOST_GROUP_BYTES / 4 / 5 - 8;
+    let add = [129u32, 1, 2, 3, 4];
+    let mut body: Vec<&[u32]> = vec![&[54, 1, 2, 0, 3]];
+    body.resize(instructions, &add);
+    let bytes = module(&body);
+    assert!(bytes.len() < MOST_GROUP_BYTES);
+    assert_eq!(PieceTable::default().split(&bytes, 0), Ok(None));
+}
+
 /// What has no order is split too, and joined to the same bytes.
 #[test]
 fn any_bytes_come_back() {
