@@ -54,8 +54,6 @@ const INTERNAL: &[&str] = &[
     "unknown-function",
     "untestable-function",
     "bundle-failed",
-    // `eval/values` shows it: naga refuses barriers in the fragments that cases run in.
-    "eval-barrier",
     "eval-internal",
     "eval-unsupported",
     "fixture-mismatch",

@@ -143,12 +143,6 @@ override twice: f32 = scale * 2.0;
 // expect: overridden(3) = 12
 fn overridden(x: f32) -> f32 { return twice * x; }
 
-// expect: atomics() = 3
-var<workgroup> counter: atomic<u32>;
-fn atomics() -> u32 {
-    let before = atomicAdd(&counter, 3u);
-    return before + atomicLoad(&counter);
-}
 // error: waits() = eval-barrier
 fn waits() -> u32 {
     workgroupBarrier();
