@@ -1,8 +1,10 @@
 //! Attributes where they do not belong.
 
-use super::constants::check_untyped;
-use super::names::{Module, stage_of};
-use super::syntax::{Attribute, Declaration, DeclarationKind, ExprKind, Function, Severity, Tree};
+use super::constants::{Constants, Kind, check_untyped};
+use super::names::{Global, Module, stage_of};
+use super::syntax::{
+    Attribute, Declaration, DeclarationKind, ExprId, ExprKind, Function, Severity, Tree,
+};
 use super::{Problem, Rule};
 
 pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
@@ -16,7 +18,7 @@ pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
     }
     for function in &tree.functions {
         problems.extend(misplaced_of_function(function));
-        problems.extend(mixed_sizes(tree, function));
+        problems.extend(mixed_sizes(module, function));
         problems.extend(compute_input(module, function));
         problems.extend(high_locations(module, function));
     }
@@ -51,17 +53,43 @@ fn misplaced_of_function(function: &Function<'_>) -> Option<Problem> {
 }
 
 /// A workgroup size with `i32` and `u32`.
-fn mixed_sizes(tree: &Tree<'_>, function: &Function<'_>) -> Option<Problem> {
+fn mixed_sizes(module: &Module<'_, '_>, function: &Function<'_>) -> Option<Problem> {
     let sizes = function.attributes.iter().find(|attribute| attribute.name == "workgroup_size")?;
-    let ends_with = |suffix: char| {
-        let is = |id: &u32| match tree.kind(*id) {
-            ExprKind::Literal(text) => text.ends_with(suffix),
-            _ => false,
-        };
-        sizes.arguments.iter().any(is)
-    };
-    let message = "the sizes of a workgroup must have one type".to_owned();
-    (ends_with('i') && ends_with('u')).then(|| Problem::new(Rule::Attribute, sizes.place, message))
+    let constants = Constants::of(module);
+    let kinds: Vec<Kind> =
+        sizes.arguments.iter().filter_map(|id| kind_of_size(&constants, *id)).collect();
+    let message = "the sizes of a workgroup must have one type, `i32` or `u32`".to_owned();
+    (kinds.contains(&Kind::I32) && kinds.contains(&Kind::U32))
+        .then(|| Problem::new(Rule::Attribute, sizes.place, message))
+}
+
+/// The type of a size, which may be computed from overrides.
+fn kind_of_size(constants: &Constants<'_, '_, '_>, id: ExprId) -> Option<Kind> {
+    let tree = constants.module.tree;
+    let id = tree.inner(id);
+    if let Some(kind) = constants.kind(id) {
+        return Some(kind);
+    }
+    match tree.kind(id) {
+        ExprKind::Name { name, template: _, local: None } => {
+            let Some(Global::Constant(at)) = constants.module.find(name) else { return None };
+            let Declaration { of_type, value, .. } = &tree.declarations[at];
+            match of_type {
+                Some(of_type) => constants.type_at(*of_type).map(|(kind, _)| kind),
+                // A number without a suffix is an `i32` in an override.
+                None => Some(match constants.kind((*value)?)? {
+                    Kind::AbstractInt => Kind::I32,
+                    kind => kind,
+                }),
+            }
+        }
+        ExprKind::Unary { operator: _, operand } => kind_of_size(constants, *operand),
+        ExprKind::Binary { operator: _, left, right } => {
+            let kinds = [*left, *right].map(|side| kind_of_size(constants, side));
+            kinds.into_iter().flatten().find(|kind| *kind != Kind::AbstractInt)
+        }
+        _ => None,
+    }
 }
 
 /// How many locations every device has for the inputs and the outputs of a stage, by the limits that

@@ -3,7 +3,7 @@
 use super::constants::Constants;
 use super::names::Module;
 use super::syntax::{ExprId, Member, Tree};
-use super::{Place, parse};
+use super::{Place, Problem, Rule, parse};
 
 /// A member of a structure whose type has an alignment from an `@align` within it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,14 +29,17 @@ pub fn nested_alignments(text: &str) -> Vec<NestedAlignment> {
         return Vec::new();
     }
     let Some(Ok((tree, _))) = parse::parse(text) else { return Vec::new() };
-    let module = Module::read(&tree);
-    let alignments = alignments(&tree, &module);
+    nested(&tree, &Module::read(&tree))
+}
+
+fn nested(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<NestedAlignment> {
+    let alignments = alignments(tree, module);
     let mut found = Vec::new();
     for structure in &tree.structs {
         for (member, Member { name, place, of_type, attributes: _ }) in
             structure.members.iter().enumerate()
         {
-            let alignment = element(&module, *of_type).map_or(0, |inner| alignments[inner]);
+            let alignment = element(module, *of_type).map_or(0, |inner| alignments[inner]);
             if alignment > 0 {
                 let (structure, name, place) =
                     (structure.name.to_owned(), (*name).to_owned(), *place);
@@ -45,6 +48,29 @@ pub fn nested_alignments(text: &str) -> Vec<NestedAlignment> {
         }
     }
     found
+}
+
+/// The members with an `@align` below that of their type. naga finds those that have no `@align`
+/// within the type.
+pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
+    let has_align = |member: &Member<'_>| member.attributes.iter().any(|one| one.name == "align");
+    if !tree.structs.iter().flat_map(|structure| &structure.members).any(has_align) {
+        return Vec::new();
+    }
+    let constants = Constants::of(module);
+    let mut problems = Vec::new();
+    for NestedAlignment { structure, member, name, place: _, alignment } in nested(tree, module) {
+        let Some(of) = tree.structs.iter().find(|found| found.name == structure) else { continue };
+        for attribute in of.members[member].attributes.iter().filter(|one| one.name == "align") {
+            let own = attribute.arguments.first().and_then(|id| constants.value(*id)?.number());
+            if own.is_some_and(|own| own < f64::from(alignment)) {
+                let message =
+                    format!("an `@align` within the type of `{name}` asks for {alignment} here");
+                problems.push(Problem::new(Rule::Attribute, attribute.place, message));
+            }
+        }
+    }
+    problems
 }
 
 /// The largest `@align` in each structure and in those within it, or 0.

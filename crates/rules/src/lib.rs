@@ -179,6 +179,7 @@ fn check_with<'s>(
     problems.extend(behaviour::check(&tree));
     problems.extend(statements::check(&tree));
     problems.extend(attributes::check(&tree, &module));
+    problems.extend(layout::check(&tree, &module));
     problems.extend(memory::check(&tree, &module));
     problems.extend(atomics::check(&tree, &module));
     problems.extend(constants::check(&tree, &module));

@@ -153,6 +153,16 @@ const TEXTS: &[(&str, Option<Rule>)] = &[
         Some(Rule::Constant),
     ),
     (
+        "const a: i32 = 4;\nconst b: u32 = 2;\n@compute @workgroup_size(a, b) fn f() { }",
+        Some(Rule::Attribute),
+    ),
+    ("override a = 4;\n@compute @workgroup_size(a, 2u) fn f() { }", Some(Rule::Attribute)),
+    ("override a: u32;\n@compute @workgroup_size(a * 2, 2i) fn f() { }", Some(Rule::Attribute)),
+    ("override a: u32;\n@compute @workgroup_size(a, 2, a + 1) fn f() { }", None),
+    ("const a = 4;\n@compute @workgroup_size(a, 2u) fn f() { }", None),
+    ("struct A { @align(32) x: vec3f }\nstruct B { @align(16) a: A }", Some(Rule::Attribute)),
+    ("struct A { @align(32) x: vec3f }\nstruct B { @align(64) a: A }", None),
+    (
         "@group(0) @binding(0) var<storage, read_write> a: i32;\n\
          @vertex fn f() -> @builtin(position) vec4f { a = 1; return vec4f(); }",
         Some(Rule::Memory),

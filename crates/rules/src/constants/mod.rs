@@ -12,7 +12,8 @@ use super::names::{Module, is_of_subgroups};
 use super::syntax::{ExprId, ExprKind, Tree};
 use super::{Problem, Rule};
 pub use evaluate::Constants;
-use value::{Kind, Shape, Value};
+pub use value::Kind;
+use value::{Shape, Value};
 
 pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
     let mut problems = Vec::new();
