@@ -117,7 +117,8 @@ typedef struct lamplight_constant {
 typedef struct lamplight_binding {
     uint32_t group, binding;
     const char *name;
-    const char *kind; /* uniform, storage, texture, storage_texture, sampler, comparison_sampler */
+    const char *kind; /* uniform, storage, texture, storage_texture, sampler, comparison_sampler,
+                         immediate */
     const char *dimension, *sample_type, *format, *access; /* of textures */
     uint32_t count; /* elements of an array of bindings; 1 otherwise */
     uint32_t size;  /* bytes of a buffer */

@@ -125,6 +125,11 @@ static int lamplight__gl_stage(lamplight *bundle, const lamplight_shader *shader
     return code;
 }
 
+/* Immediates are a uniform block in GLSL. */
+static int lamplight__gl_is_block(const lamplight_binding *binding) {
+    return strcmp(binding->kind, "uniform") == 0 || strcmp(binding->kind, "immediate") == 0;
+}
+
 /* Gives each uniform block the number that it has in the layout of the program. */
 static void lamplight__gl_blocks(GLuint program, const lamplight_shader *shader) {
     lamplight_binding binding;
@@ -132,7 +137,7 @@ static void lamplight__gl_blocks(GLuint program, const lamplight_shader *shader)
     for (i = 0; lamplight_binding_at(lamplight_bindings(shader), i, &binding); i++) {
         const char *name = lamplight_text(
             lamplight_field(lamplight_slot(shader, binding.group, binding.binding), "name"));
-        GLuint index = name && strcmp(binding.kind, "uniform") == 0
+        GLuint index = name && lamplight__gl_is_block(&binding)
                            ? glGetUniformBlockIndex(program, name)
                            : GL_INVALID_INDEX;
         if (index != GL_INVALID_INDEX)
@@ -197,7 +202,7 @@ void lamplight_gl_block(const lamplight_gl *gl, const char *name, GLuint buffer)
     lamplight_binding binding;
     uint32_t i;
     for (i = 0; lamplight_binding_at(gl->fragment.layout, i, &binding); i++)
-        if (strcmp(binding.kind, "uniform") == 0 && strcmp(binding.name, name) == 0)
+        if (lamplight__gl_is_block(&binding) && strcmp(binding.name, name) == 0)
             glBindBufferBase(GL_UNIFORM_BUFFER, lamplight_index_of(gl->fragment.layout, &binding),
                              buffer);
 }

@@ -40,7 +40,11 @@ int lamplight_vk_open(lamplight *bundle, VkDevice device, const char *program, c
 uint32_t lamplight_vk_bindings(lamplight_value layout, uint32_t set,
                                VkDescriptorSetLayoutBinding *out, uint32_t most);
 
-/* The kind of descriptor of a binding. */
+/* The push constants of all permutations of a program, for its pipeline layout; of size 0 if it has
+ * none. */
+VkPushConstantRange lamplight_vk_push(lamplight_value layout);
+
+/* The kind of descriptor of a binding. Immediates have none. */
 VkDescriptorType lamplight_vk_descriptor(const lamplight_binding *binding);
 
 /* Attributes of a vertex stage in one buffer without padding. Returns how many there are; writes at
@@ -142,25 +146,40 @@ VkDescriptorType lamplight_vk_descriptor(const lamplight_binding *binding) {
     return VK_DESCRIPTOR_TYPE_SAMPLER;
 }
 
+static VkShaderStageFlags lamplight__vk_stages(const lamplight_binding *binding) {
+    return (VkShaderStageFlags)((binding->vertex ? VK_SHADER_STAGE_VERTEX_BIT : 0) |
+                                (binding->fragment ? VK_SHADER_STAGE_FRAGMENT_BIT : 0) |
+                                (binding->compute ? VK_SHADER_STAGE_COMPUTE_BIT : 0));
+}
+
 uint32_t lamplight_vk_bindings(lamplight_value layout, uint32_t set,
                                VkDescriptorSetLayoutBinding *out, uint32_t most) {
     lamplight_binding binding;
     uint32_t i, count = 0;
     for (i = 0; lamplight_binding_at(layout, i, &binding); i++) {
-        if (binding.group != set) continue;
+        if (binding.group != set || strcmp(binding.kind, "immediate") == 0) continue;
         if (count < most) {
             memset(&out[count], 0, sizeof out[count]);
             out[count].binding = binding.binding;
             out[count].descriptorType = lamplight_vk_descriptor(&binding);
             out[count].descriptorCount = binding.count;
-            out[count].stageFlags =
-                (VkShaderStageFlags)((binding.vertex ? VK_SHADER_STAGE_VERTEX_BIT : 0) |
-                                     (binding.fragment ? VK_SHADER_STAGE_FRAGMENT_BIT : 0) |
-                                     (binding.compute ? VK_SHADER_STAGE_COMPUTE_BIT : 0));
+            out[count].stageFlags = lamplight__vk_stages(&binding);
         }
         count++;
     }
     return count;
+}
+
+VkPushConstantRange lamplight_vk_push(lamplight_value layout) {
+    VkPushConstantRange range = {0, 0, 0};
+    lamplight_binding binding;
+    uint32_t i;
+    for (i = 0; lamplight_binding_at(layout, i, &binding); i++) {
+        if (strcmp(binding.kind, "immediate") != 0) continue;
+        range.stageFlags |= lamplight__vk_stages(&binding);
+        if (range.size < binding.size) range.size = (uint32_t)binding.size;
+    }
+    return range;
 }
 
 static VkFormat lamplight__vk_format(lamplight_value shape, uint32_t rows) {

@@ -328,7 +328,9 @@ fn slots() -> Outcome {
                 let is_it = |one: &&Binding| (one.group, one.binding) == (slot.group, slot.binding);
                 let binding = found.reflection.bindings.iter().find(is_it).ok_or("no binding")?;
                 let kind = match binding.kind {
-                    BindingKind::Uniform | BindingKind::Storage => "buffer(",
+                    BindingKind::Uniform | BindingKind::Storage | BindingKind::Immediate => {
+                        "buffer("
+                    }
                     BindingKind::Texture | BindingKind::StorageTexture => "texture(",
                     BindingKind::Sampler | BindingKind::ComparisonSampler => "sampler(",
                 };

@@ -39,7 +39,7 @@ pub fn entry(
             wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)
         }
         BindingKind::Texture => texture(binding)?,
-        BindingKind::Storage | BindingKind::StorageTexture => {
+        BindingKind::Storage | BindingKind::StorageTexture | BindingKind::Immediate => {
             let what = "which this test does not expect in the library";
             return Err(format!("`{}` is a {:?}, {what}", binding.name, binding.kind));
         }

@@ -82,6 +82,16 @@ pub enum BindingKind {
     Sampler,
     /// A sampler that compares with a reference depth.
     ComparisonSampler,
+    /// Constants that are set with the commands: `var<immediate>` in WGSL, push constants in Vulkan.
+    /// Targets without them have a uniform buffer in the group and binding of the reflection.
+    Immediate,
+}
+
+impl BindingKind {
+    /// Whether it is memory with a layout.
+    pub fn is_buffer(self) -> bool {
+        matches!(self, Self::Uniform | Self::Storage | Self::Immediate)
+    }
 }
 
 /// A resource.
@@ -364,7 +374,8 @@ pub struct BindingSlot {
     /// Register space or descriptor set, where the target has them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub space: Option<u32>,
-    /// Register, binding, table index or texture unit; `None` where only names exist.
+    /// Register, binding, table index or texture unit; `None` where only names exist, and for
+    /// immediates in targets that have them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub index: Option<u32>,
     /// The class of the register, where the target has classes: `b`, `t`, `u` (HLSL).

@@ -494,7 +494,8 @@ fn descriptor_type(kind: SlotKind) -> vk::DescriptorType {
         SlotKind::InputAttachment => return vk::DescriptorType::INPUT_ATTACHMENT,
     };
     match kind {
-        BindingKind::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
+        // Immediates get no slot.
+        BindingKind::Uniform | BindingKind::Immediate => vk::DescriptorType::UNIFORM_BUFFER,
         BindingKind::Storage => vk::DescriptorType::STORAGE_BUFFER,
         BindingKind::Texture => vk::DescriptorType::SAMPLED_IMAGE,
         BindingKind::StorageTexture => vk::DescriptorType::STORAGE_IMAGE,

@@ -89,8 +89,11 @@ impl ReflectedStage {
         let entry = CString::new(entry).map_err(|error| error.to_string())?;
         let stage = reflection.stage;
         let words = SpirvStage { stage, entry, words, constants: Vec::new() };
-        let slots = reflection.bindings.iter().map(binding_slot).collect();
-        Ok(Self { words, reflection, slots, has_push: false })
+        let is_push = |one: &&Binding| one.kind == BindingKind::Immediate;
+        let has_push = reflection.bindings.iter().any(|one| is_push(&one));
+        let bound = reflection.bindings.iter().filter(|one| !is_push(one));
+        let slots = bound.map(binding_slot).collect();
+        Ok(Self { words, reflection, slots, has_push })
     }
 
     /// From an entry point of a module, with these conventions.

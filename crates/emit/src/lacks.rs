@@ -12,7 +12,7 @@ use naga::{
     TypeInner, VectorSize,
 };
 
-use super::{columns, strides, targets};
+use super::{columns, immediates, strides, targets};
 use lamplight_bundle::{Language, Target};
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
@@ -200,6 +200,9 @@ pub fn check_lacks(
             refuse(format!("target `{target}`: {TWO_ROWS}"), span, "it is in here");
         }
     }
+    for (message, span) in lacking_immediates(module, wanted) {
+        refuse(message, span, "these immediates");
+    }
     if validated.language == Language::Glsl {
         for (target, span) in wanted.iter().flat_map(|target| {
             strides::wide_arrays(module, *target).into_iter().map(move |span| (target, span))
@@ -225,6 +228,13 @@ pub fn check_lacks(
         }
     }
     if found.is_empty() { Ok(()) } else { Err(found) }
+}
+
+/// Immediates that are no uniform buffer, for the targets that have one in their place.
+fn lacking_immediates(module: &Module, wanted: &[Target]) -> Vec<(String, Span)> {
+    let Some((reason, span)) = immediates::lack(module) else { return Vec::new() };
+    let entries = targets::ALL.iter().filter(|one| !one.immediates && wanted.contains(&one.target));
+    entries.map(|entry| (format!("target `{}`: {reason}", entry.target), span)).collect()
 }
 
 /// naga writes the index of the workgroup in its place.
@@ -310,7 +320,8 @@ pub fn first_lack(module: &Module, version: Version) -> Option<String> {
 /// The places of uniform blocks that have matrices of two rows.
 fn two_rows(module: &Module) -> impl Iterator<Item = Span> {
     let blocks = module.global_variables.iter();
-    let blocks = blocks.filter(|(_, one)| one.space == AddressSpace::Uniform);
+    let blocks = blocks
+        .filter(|(_, one)| one.space == AddressSpace::Uniform || immediates::is_immediate(one));
     blocks
         .filter(|(_, one)| has_two_rows(module, one.ty))
         .map(|(handle, _)| module.global_variables.get_span(handle))

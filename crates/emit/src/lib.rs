@@ -20,6 +20,7 @@ mod gaps;
 pub mod glsl;
 mod gradients;
 mod header;
+mod immediates;
 mod invariants;
 mod isolate;
 mod lacks;
@@ -83,6 +84,8 @@ pub struct TargetEntry {
     pub header: &'static [&'static str],
     /// What the language has for overrides.
     pub overrides: Overrides,
+    /// Whether the language has immediates. Others have a uniform buffer.
+    pub immediates: bool,
     /// What validates its outputs.
     pub validation: ValidatorRules,
     /// The clip spaces of its vertex stages.
@@ -252,6 +255,11 @@ fn written_plainly(
         Some((module, info)) => (module, info, 0),
         None => (&validated.module, &validated.info, index),
     };
+    let uniform = match writer.immediates {
+        true => None,
+        false => immediates::as_uniform(module).map_err(failed)?,
+    };
+    let (module, info) = uniform.as_ref().map_or((module, info), |(module, info)| (module, info));
     let (stage, entry) = (point.stage, point.name.as_str());
     let source = EmitSource { module, info, stage, entry, index, conventions };
     if writer.overrides == Overrides::Kept || module.overrides.is_empty() {

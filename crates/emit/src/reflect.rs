@@ -6,6 +6,7 @@ use naga::{
     AddressSpace, GlobalVariable, Handle, ImageClass, Module, StorageAccess, Type, TypeInner,
 };
 
+use super::immediates;
 use super::names::{builtin_name, interpolation_name, sampling_name, type_name};
 use super::shapes::{is_filtering, shape_of, texture_shape};
 use super::specialise;
@@ -163,11 +164,11 @@ fn make_binding(
     variable: &GlobalVariable,
     layouter: &Layouter,
 ) -> Option<Binding> {
-    let place = variable.binding?;
+    let place = immediates::place(variable)?;
     let kind = binding_kind(module, variable)?;
     let element = element_type(module, variable.ty);
     let ty = &module.types[element];
-    let is_buffer = matches!(kind, BindingKind::Uniform | BindingKind::Storage);
+    let is_buffer = kind.is_buffer();
     Some(Binding {
         group: place.group,
         binding: place.binding,
@@ -213,6 +214,7 @@ pub(super) fn binding_kind(module: &Module, variable: &GlobalVariable) -> Option
     match (variable.space, &module.types[element_type(module, variable.ty)].inner) {
         (AddressSpace::Uniform, _) => Some(BindingKind::Uniform),
         (AddressSpace::Storage { .. }, _) => Some(BindingKind::Storage),
+        (AddressSpace::Immediate, _) => Some(BindingKind::Immediate),
         (_, TypeInner::Sampler { comparison: true }) => Some(BindingKind::ComparisonSampler),
         (_, TypeInner::Sampler { comparison: false }) => Some(BindingKind::Sampler),
         (_, TypeInner::Image { class: ImageClass::Storage { .. }, .. }) => {

@@ -50,7 +50,10 @@ pub fn with_sizes(text: String, module: &Module) -> Result<String, String> {
 fn attributes_of(module: &Module) -> Result<BTreeMap<(Handle<Type>, usize), String>, String> {
     let mut structs = BTreeSet::new();
     for (_, variable) in module.global_variables.iter() {
-        if matches!(variable.space, AddressSpace::Uniform | AddressSpace::Storage { access: _ }) {
+        if matches!(
+            variable.space,
+            AddressSpace::Uniform | AddressSpace::Immediate | AddressSpace::Storage { access: _ }
+        ) {
             collect_structs(module, variable.ty, &mut structs);
         }
     }

@@ -2,8 +2,8 @@
 
 use naga::ResourceBinding;
 
-use super::EmitSource;
 use super::reflect::{binding_count, binding_kind, used_globals};
+use super::{EmitSource, immediates};
 use lamplight_bundle::{BindingKind, BindingSlot, Native};
 
 /// How a target numbers bindings.
@@ -43,14 +43,18 @@ pub fn assign_slots(
         .filter_map(|(_, variable)| {
             let kind = binding_kind(source.module, variable)?;
             let count = binding_count(source.module, variable.ty);
-            Some(UsedBinding { place: variable.binding?, kind, count })
+            Some(UsedBinding { place: immediates::place(variable)?, kind, count })
         })
         .collect();
     found.sort();
     let mut next = [0; 3];
     found
         .into_iter()
-        .map(|used| (used, slot_number(numbering, used.place, &mut next[slot_table(used)])))
+        .map(|used| match used.kind {
+            // Where immediates are no buffer, they have no number.
+            BindingKind::Immediate => (used, None),
+            _ => (used, slot_number(numbering, used.place, &mut next[slot_table(used)])),
+        })
         .collect()
 }
 
@@ -61,7 +65,7 @@ pub fn native_reflection(source: &EmitSource<'_>, entry: &str, numbering: Number
         .map(|(UsedBinding { place, kind: _, count: _ }, index)| BindingSlot {
             group: place.group,
             binding: place.binding,
-            space: (numbering == Numbering::Author).then_some(place.group),
+            space: index.filter(|_| numbering == Numbering::Author).map(|_| place.group),
             index,
             register: None,
             name: None,
@@ -87,7 +91,7 @@ fn slot_number(numbering: Numbering, binding: ResourceBinding, next: &mut u32) -
 fn slot_table(used: UsedBinding) -> usize {
     match used.kind {
         _ if used.count.is_some() => 0,
-        BindingKind::Uniform | BindingKind::Storage => 0,
+        BindingKind::Uniform | BindingKind::Storage | BindingKind::Immediate => 0,
         BindingKind::Texture | BindingKind::StorageTexture => 1,
         BindingKind::Sampler | BindingKind::ComparisonSampler => 2,
     }

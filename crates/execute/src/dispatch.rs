@@ -6,9 +6,9 @@ use super::executor_failed;
 use super::frame::{Buffers, EntryPoint};
 use super::interpreter::eval_failed;
 use super::shipped::Shipped;
-use lamplight_bundle::Target;
 #[cfg(not(target_family = "wasm"))]
-use lamplight_bundle::{Binding, BindingKind};
+use lamplight_bundle::Binding;
+use lamplight_bundle::Target;
 use lamplight_diagnostic::Diagnostic;
 use lamplight_eval::{Machine, Program, Resources};
 use lamplight_validate::info_of;
@@ -81,10 +81,8 @@ impl<'a> Dispatch<'a> {
 pub(super) fn bound_buffers(
     shipped: &Shipped,
 ) -> Result<impl Iterator<Item = &Binding>, Diagnostic> {
-    let is_buffer =
-        |one: &&Binding| matches!(one.kind, BindingKind::Uniform | BindingKind::Storage);
     let bindings = &shipped.reflection.bindings;
-    match bindings.iter().find(|one| !is_buffer(one)) {
+    match bindings.iter().find(|one| !one.kind.is_buffer()) {
         Some(other) => Err(executor_failed(format!("`{}` is no buffer", other.name))),
         None => Ok(bindings.iter()),
     }

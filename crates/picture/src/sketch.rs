@@ -297,7 +297,9 @@ fn bound_input(
         BindingKind::Texture => plain_texture(&binding.name, &binding.ty, &shot.surroundings)
             .map(|texture| SketchBinding::Fixture(Fixture::Texture(texture)))
             .ok_or_else(|| unbound(binding)),
-        BindingKind::Storage | BindingKind::StorageTexture => Err(unbound(binding)),
+        BindingKind::Storage | BindingKind::StorageTexture | BindingKind::Immediate => {
+            Err(unbound(binding))
+        }
     }
 }
 

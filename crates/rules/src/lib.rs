@@ -99,9 +99,12 @@ pub fn summarise<'s>(
 }
 
 /// Directives with an extension that naga does not know, although what it allows is there: pointers
-/// are placed before naga sees them, and naga has subgroups at all times.
-const UNREAD: [(&str, &str); 2] =
-    [("requires", "unrestricted_pointer_parameters"), ("enable", "subgroups")];
+/// are placed before naga sees them, and naga has subgroups and immediates at all times.
+const UNREAD: [(&str, &str); 3] = [
+    ("requires", "unrestricted_pointer_parameters"),
+    ("requires", "immediate_address_space"),
+    ("enable", "subgroups"),
+];
 
 /// The text with blanks for what naga cannot read, the filters at statements and some directives;
 /// `None` where it has neither. It needs a large stack.

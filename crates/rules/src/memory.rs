@@ -62,6 +62,10 @@ fn check_variable(
     if has_atomic(module, of_type, 0) {
         problems.extend(misplaced_atomic(space, access, declaration.place));
     }
+    if space == Some("immediate") && has_array(module, of_type, 0) {
+        let message = "immediates have no arrays".to_owned();
+        problems.push(Problem::new(Rule::Memory, declaration.place, message));
+    }
 }
 
 /// Why atomics cannot be in an address space.
@@ -105,6 +109,20 @@ pub fn has_atomic(module: &Module<'_, '_>, id: ExprId, depth: usize) -> bool {
         _ => module.structure(id).is_some_and(|structure| {
             let mut members = module.tree.structs[structure].members.iter();
             members.any(|member| has_atomic(module, member.of_type, depth + 1))
+        }),
+    }
+}
+
+/// Whether a type has arrays within.
+fn has_array(module: &Module<'_, '_>, id: ExprId, depth: usize) -> bool {
+    if depth > 64 {
+        return false;
+    }
+    match module.type_of(id) {
+        Some(("array", _)) => true,
+        _ => module.structure(id).is_some_and(|structure| {
+            let mut members = module.tree.structs[structure].members.iter();
+            members.any(|member| has_array(module, member.of_type, depth + 1))
         }),
     }
 }

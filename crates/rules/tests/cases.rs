@@ -152,6 +152,8 @@ const TEXTS: &[(&str, Option<Rule>)] = &[
         "const a = 1.0;\nfn f() -> f32 { const a = 0.0; return inverseSqrt(a); }",
         Some(Rule::Constant),
     ),
+    ("struct A { x: array<vec4f, 2> }\nvar<immediate> a: A;", Some(Rule::Memory)),
+    ("struct A { x: mat4x4f }\nvar<immediate> a: A;", None),
     (
         "const a: i32 = 4;\nconst b: u32 = 2;\n@compute @workgroup_size(a, b) fn f() { }",
         Some(Rule::Attribute),

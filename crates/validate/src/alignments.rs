@@ -49,8 +49,10 @@ fn is_lost(nested: &NestedAlignment, module: &Module) -> bool {
 /// Whether a buffer has values of a type. Elsewhere, nobody knows where members lie.
 fn is_in_buffer(module: &Module, wanted: Handle<Type>) -> bool {
     module.global_variables.iter().any(|(_, variable)| {
-        matches!(variable.space, AddressSpace::Uniform | AddressSpace::Storage { access: _ })
-            && has_type(module, variable.ty, wanted)
+        matches!(
+            variable.space,
+            AddressSpace::Uniform | AddressSpace::Immediate | AddressSpace::Storage { access: _ }
+        ) && has_type(module, variable.ty, wanted)
     })
 }
 

@@ -79,6 +79,7 @@ pub struct Validated {
 /// included.
 pub const CAPABILITIES: Capabilities = Capabilities::MULTISAMPLED_SHADING
     .union(Capabilities::CUBE_ARRAY_TEXTURES)
+    .union(Capabilities::IMMEDIATES)
     .union(Capabilities::SHADER_FLOAT16_IN_FLOAT32);
 
 /// What at least one target supports. Each target says in its file what it has of it.

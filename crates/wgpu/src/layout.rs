@@ -59,9 +59,16 @@ pub fn pipeline_layout(
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
         bind_group_layouts: &all,
-        immediate_size: 0,
+        immediate_size: immediate_size(layout),
     });
     Ok(PipelineLayout { layout, groups })
+}
+
+/// Bytes of the immediates of a program, a multiple of 4.
+pub fn immediate_size(layout: &[LayoutBinding]) -> u32 {
+    let immediates = layout.iter().filter(|found| found.binding.kind == BindingKind::Immediate);
+    let sizes = immediates.filter_map(|found| found.binding.size);
+    sizes.max().unwrap_or(0).next_multiple_of(4)
 }
 
 /// More groups than any device of wgpu has, so that no bundle asks for much memory.
@@ -77,7 +84,8 @@ pub fn layout_entries(
     layout: &[LayoutBinding],
 ) -> Result<Vec<Vec<wgpu::BindGroupLayoutEntry>>, LayoutError> {
     let mut groups: Vec<Vec<wgpu::BindGroupLayoutEntry>> = Vec::new();
-    for found in layout {
+    let bound = layout.iter().filter(|found| found.binding.kind != BindingKind::Immediate);
+    for found in bound {
         let binding = &found.binding;
         if binding.group >= MOST_GROUPS {
             return Err(LayoutError::Group(binding.name.clone(), binding.group));
@@ -111,7 +119,8 @@ fn binding_type(binding: &Binding) -> Result<wgpu::BindingType, LayoutError> {
     };
     let texture = binding.texture.as_ref().ok_or_else(|| unknown(binding, "texture"));
     Ok(match binding.kind {
-        BindingKind::Uniform => buffer(wgpu::BufferBindingType::Uniform),
+        // Immediates are in no group.
+        BindingKind::Uniform | BindingKind::Immediate => buffer(wgpu::BufferBindingType::Uniform),
         BindingKind::Storage => {
             buffer(wgpu::BufferBindingType::Storage { read_only: !binding.writable })
         }

@@ -11,5 +11,5 @@ mod layout;
 mod stage;
 
 pub use block::{Block, BlockError, Number};
-pub use layout::{LayoutError, PipelineLayout, layout_entries, pipeline_layout};
+pub use layout::{LayoutError, PipelineLayout, immediate_size, layout_entries, pipeline_layout};
 pub use stage::{Stage, StageError, vertex_attributes};

@@ -4,7 +4,7 @@ export const VERSION: number;
 export type Language = "wesl" | "glsl";
 export type Stage = "vertex" | "fragment" | "compute";
 export type BindingKind =
-  | "uniform" | "storage" | "texture" | "storage_texture" | "sampler" | "comparison_sampler";
+  | "uniform" | "storage" | "texture" | "storage_texture" | "sampler" | "comparison_sampler" | "immediate";
 /** A group and a binding. */
 export type Place = [group: number, binding: number];
 

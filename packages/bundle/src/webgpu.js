@@ -34,6 +34,8 @@ function resourceOf({ kind, size, writable, texture }) {
   }
 }
 
+const isImmediate = (kind) => kind === "immediate";
+
 /**
  * The entries of each group of a program's layout, by the number of the group.
  *
@@ -42,7 +44,7 @@ function resourceOf({ kind, size, writable, texture }) {
  */
 export function layoutEntries(layout) {
   const groups = [];
-  for (const binding of layout) {
+  for (const binding of layout.filter(({ kind }) => !isImmediate(kind))) {
     if (!(binding.group < MOST_GROUPS)) {
       throw new TypeError(`no device has a group ${binding.group}, which \`${binding.name}\` is in`);
     }
@@ -59,10 +61,14 @@ export function layoutEntries(layout) {
 
 /** One pipeline layout for all permutations of a program, and its bind group layouts. */
 export function pipelineLayout(device, bundle, program, { language } = {}) {
-  const groups = layoutEntries(bundle.layout(program, language)).map((entries, group) =>
+  const all = bundle.layout(program, language);
+  const groups = layoutEntries(all).map((entries, group) =>
     device.createBindGroupLayout({ label: `${program} group ${group}`, entries }),
   );
-  const layout = device.createPipelineLayout({ label: program, bindGroupLayouts: groups });
+  const immediateSize = Math.max(0, ...all.map(({ kind, size }) => (isImmediate(kind) ? size : 0)));
+  const layout = device.createPipelineLayout({
+    label: program, bindGroupLayouts: groups, immediateSize,
+  });
   return { layout, groups };
 }
 

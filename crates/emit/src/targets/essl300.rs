@@ -24,6 +24,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     capabilities: Capabilities::empty(),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
+    immediates: false,
     validation: ValidatorRules { validator: "glslang", rules: &["own", "310 es"] },
     clip: &clip::OPENGL,
     write,

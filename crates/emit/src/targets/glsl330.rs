@@ -24,6 +24,7 @@ pub const TARGET: TargetEntry = TargetEntry {
         .union(Capabilities::PRIMITIVE_INDEX),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
+    immediates: false,
     validation: ValidatorRules { validator: "glslang", rules: &["own"] },
     clip: &clip::OPENGL,
     write,

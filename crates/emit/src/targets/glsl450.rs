@@ -28,6 +28,7 @@ pub const TARGET: TargetEntry = TargetEntry {
         .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
+    immediates: false,
     validation: ValidatorRules { validator: "glslang", rules: &["own", "vulkan"] },
     clip: &clip::OPENGL,
     write,

@@ -35,6 +35,7 @@ pub const TARGET: TargetEntry = TargetEntry {
         .union(TEXTURE_ARRAYS),
     header: &[],
     overrides: Overrides::Macros,
+    immediates: false,
     validation: ValidatorRules { validator: "glslang", rules: &["hlsl"] },
     clip: &clip::SHARED,
     write,
@@ -181,7 +182,7 @@ fn register_class(source: &EmitSource<'_>, place: Place) -> Option<&'static str>
     let (_, variable) = variables
         .find(|(_, one)| one.binding.is_some_and(|one| [one.group, one.binding] == place))?;
     Some(match (binding_kind(source.module, variable)?, variable.space) {
-        (BindingKind::Uniform, _) => "b",
+        (BindingKind::Uniform | BindingKind::Immediate, _) => "b",
         (BindingKind::Storage, naga::AddressSpace::Storage { access })
             if access.contains(naga::StorageAccess::STORE) =>
         {

@@ -31,6 +31,7 @@ pub const TARGET: TargetEntry = TargetEntry {
         .union(BINDING_ARRAYS),
     header: &["#", "using "],
     overrides: Overrides::FunctionConstants,
+    immediates: false,
     validation: ValidatorRules { validator: "clang", rules: &[] },
     clip: &clip::SHARED,
     write,
@@ -117,7 +118,7 @@ fn bind_target(used: UsedBinding, slot: u8) -> BindTarget {
         _ if used.count.is_some() => {
             BindTarget { buffer: Some(slot), mutable, ..BindTarget::default() }
         }
-        BindingKind::Uniform => BindTarget { buffer: Some(slot), ..BindTarget::default() },
+        BindingKind::Uniform | BindingKind::Immediate => BindTarget { buffer: Some(slot), ..BindTarget::default() },
         BindingKind::Storage => {
             BindTarget { buffer: Some(slot), mutable: true, ..BindTarget::default() }
         }

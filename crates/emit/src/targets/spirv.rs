@@ -30,6 +30,7 @@ pub const TARGET: TargetEntry = TargetEntry {
         .union(BINDING_ARRAYS),
     header: &[],
     overrides: Overrides::Specialised,
+    immediates: true,
     validation: ValidatorRules { validator: "spirv_val", rules: &["vulkan1.0", "vulkan1.1"] },
     clip: &clip::VULKAN,
     write,

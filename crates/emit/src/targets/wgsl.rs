@@ -30,6 +30,7 @@ pub const TARGET: TargetEntry = TargetEntry {
         .union(Capabilities::STORAGE_TEXTURE_16BIT_NORM_FORMATS),
     header: &["enable ", "requires ", "diagnostic("],
     overrides: Overrides::Kept,
+    immediates: true,
     validation: ValidatorRules { validator: "naga_tint", rules: &[] },
     clip: &clip::SHARED,
     write,

@@ -15,6 +15,9 @@ use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{AddressSpace, Arena, ArraySize, Expression, Handle, Module, Span, Type, TypeInner};
 use std::collections::BTreeMap;
 
+/// The group and binding of immediates, as in outputs that have a buffer in their place.
+const IMMEDIATES: (u32, u32) = (4, 0);
+
 /// Where an expression's value is.
 #[derive(Debug, Clone, Copy)]
 enum Loc {
@@ -182,7 +185,11 @@ impl<'m> ProgramBuilder<'m> {
             }
         };
         let slot = if let Loc::Place(slot) = loc { slot } else { 0 };
-        let binding = variable.binding.map(|binding| (binding.group, binding.binding));
+        // Immediates are bound where they are a buffer in other languages.
+        let binding = match variable.space {
+            AddressSpace::Immediate => Some(IMMEDIATES),
+            _ => variable.binding.map(|binding| (binding.group, binding.binding)),
+        };
         let bytes = inner.try_size(self.module.to_ctx()).unwrap_or(0);
         self.program.globals.push(Global {
             name: variable.name.clone().unwrap_or_default(),

@@ -26,8 +26,8 @@ struct DeviceBuffer {
 /// Bindings between those of an output. wgpu numbers bindings without gaps, but an output keeps its
 /// own numbers.
 fn fillers(shipped: &Shipped) -> Vec<Place> {
-    let used: BTreeSet<Place> =
-        shipped.reflection.bindings.iter().map(|one| (one.group, one.binding)).collect();
+    let bindings = shipped.reflection.bindings.iter();
+    let used: BTreeSet<Place> = bindings.map(|one| (one.group, one.binding)).collect();
     let below = |(group, last): Place| (0..last).map(move |binding| (group, binding));
     let all: BTreeSet<Place> = used.iter().copied().flat_map(below).collect();
     all.difference(&used).copied().collect()
@@ -44,6 +44,12 @@ impl WgpuDevice {
         if target == Target::HLSL
             && let Some(reason) = hlsl_lacks(&shipped.text())
         {
+            return Err(Diagnostic::error(codes::EXECUTOR_LACKS, reason));
+        }
+        let most = self.device.limits().max_bind_groups;
+        let mut bound = bound_buffers(shipped)?;
+        if !has_immediates(target) && bound.any(|one| one.group >= most) {
+            let reason = format!("the device has {most} groups");
             return Err(Diagnostic::error(codes::EXECUTOR_LACKS, reason));
         }
         let made = self.guarded(|gpu| gpu.submit_compute(dispatch, shipped))??;
@@ -63,7 +69,9 @@ impl WgpuDevice {
         shipped: &Shipped,
     ) -> Result<Vec<DeviceBuffer>, Diagnostic> {
         let (module, entry) = self.compute_module(shipped)?;
+        let immediates = self.immediates(dispatch, shipped)?;
         let mut buffers: Vec<DeviceBuffer> = bound_buffers(shipped)?
+            .filter(|binding| immediates.is_empty() || binding.kind != BindingKind::Immediate)
             .map(|binding| {
                 let place = (binding.group, binding.binding);
                 Ok(self.device_buffer(place, binding_type(binding), dispatch.buffer(place)?))
@@ -79,7 +87,7 @@ impl WgpuDevice {
         let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
             bind_group_layouts: &in_order,
-            immediate_size: 0,
+            immediate_size: immediates.len() as u32,
         });
         let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: None,
@@ -91,14 +99,7 @@ impl WgpuDevice {
         });
         let groups = self.compute_groups(&buffers, &layouts);
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        for (index, group) in &groups {
-            pass.set_bind_group(*index, group, &[]);
-        }
-        let [x, y, z] = dispatch.groups;
-        pass.dispatch_workgroups(x, y, z);
-        drop(pass);
+        record_pass(&mut encoder, &pipeline, &groups, (dispatch.groups, &immediates));
         for DeviceBuffer { place: _, ty: _, buffer, bytes: _, copy } in &buffers {
             if let Some(copy) = copy {
                 encoder.copy_buffer_to_buffer(buffer, 0, copy, 0, buffer.size());
@@ -106,6 +107,20 @@ impl WgpuDevice {
         }
         self.queue.submit([encoder.finish()]);
         Ok(buffers)
+    }
+
+    /// The immediates of an output that has them, and not a buffer in their place.
+    fn immediates(
+        &self,
+        dispatch: &Dispatch<'_>,
+        shipped: &Shipped,
+    ) -> Result<Vec<u8>, Diagnostic> {
+        let mut bound = bound_buffers(shipped)?;
+        let is_own = has_immediates(shipped.target);
+        match bound.find(|one| is_own && one.kind == BindingKind::Immediate) {
+            Some(binding) => Ok(dispatch.buffer((binding.group, binding.binding))?.to_vec()),
+            None => Ok(Vec::new()),
+        }
     }
 
     fn compute_module(
@@ -190,9 +205,31 @@ impl WgpuDevice {
     }
 }
 
+fn record_pass(
+    encoder: &mut wgpu::CommandEncoder,
+    pipeline: &wgpu::ComputePipeline,
+    groups: &[(u32, wgpu::BindGroup)],
+    ([x, y, z], immediates): ([u32; 3], &[u8]),
+) {
+    let mut pass = encoder.begin_compute_pass(&Default::default());
+    pass.set_pipeline(pipeline);
+    for (index, group) in groups {
+        pass.set_bind_group(*index, group, &[]);
+    }
+    if !immediates.is_empty() {
+        pass.set_immediates(0, immediates);
+    }
+    pass.dispatch_workgroups(x, y, z);
+}
+
+/// Whether outputs have immediates, and not a buffer in their place.
+fn has_immediates(target: Target) -> bool {
+    matches!(target, Target::WGSL | Target::SPIRV)
+}
+
 fn binding_type(binding: &Binding) -> wgpu::BufferBindingType {
     match binding.kind {
-        BindingKind::Uniform => wgpu::BufferBindingType::Uniform,
+        BindingKind::Uniform | BindingKind::Immediate => wgpu::BufferBindingType::Uniform,
         _ => wgpu::BufferBindingType::Storage { read_only: !binding.writable },
     }
 }

@@ -89,7 +89,8 @@ pub fn open_gpu(wanted: DeviceRequest) -> Result<WgpuDevice, String> {
     adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
     let none = || format!("wgpu found no adapter {}", wanted.named);
     let adapter = adapters.into_iter().next().ok_or_else(none)?;
-    let mut features = wgpu::Features::FLOAT32_FILTERABLE & adapter.features();
+    let wished = wgpu::Features::FLOAT32_FILTERABLE | wgpu::Features::IMMEDIATES;
+    let mut features = wished & adapter.features();
     features |= wanted.shaders.features();
     if !adapter.features().contains(features) {
         let lacks = features - adapter.features();

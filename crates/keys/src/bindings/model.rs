@@ -66,7 +66,8 @@ impl ProgramModel {
         };
         for (index, found) in model.bindings.clone().iter().enumerate() {
             let binding = &found.binding;
-            let is_block = binding.kind == BindingKind::Uniform && !binding.members.is_empty();
+            let is_block = matches!(binding.kind, BindingKind::Uniform | BindingKind::Immediate)
+                && !binding.members.is_empty();
             if let (true, Some(size)) = (is_block, binding.size) {
                 let block = model.structure(&binding.name, size, &binding.members);
                 model.blocks.insert(index, block);

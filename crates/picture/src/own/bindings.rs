@@ -126,7 +126,7 @@ impl<'s> BoundStages<'s> {
                     let note = format!("the storage buffer `{}` holds zeros", binding.name);
                     self.notes.push(note);
                 }
-                BindingKind::Uniform | BindingKind::StorageTexture => {}
+                BindingKind::Uniform | BindingKind::StorageTexture | BindingKind::Immediate => {}
             }
         }
         if errors.is_empty() { Ok(()) } else { Err(errors) }
@@ -380,7 +380,7 @@ fn refusal(bound: &Bound<'_>) -> Option<Diagnostic> {
         && match binding.kind {
             BindingKind::Uniform => size <= UNIFORM_BYTES,
             BindingKind::Storage => !binding.writable && size <= STORAGE_BYTES,
-            BindingKind::StorageTexture => false,
+            BindingKind::StorageTexture | BindingKind::Immediate => false,
             BindingKind::Texture | BindingKind::Sampler | BindingKind::ComparisonSampler => true,
         };
     (!is_fine).then(|| unbound(bound))
@@ -394,6 +394,7 @@ fn unbound(bound: &Bound<'_>) -> Diagnostic {
         BindingKind::Uniform if size > UNIFORM_BYTES => "it has more than 64 KiB",
         BindingKind::Storage if *writable => "the stage may write to it",
         BindingKind::Storage => "it has more than 16 MiB",
+        BindingKind::Immediate => "immediates are not drawn",
         BindingKind::StorageTexture => "textures that are written to are not drawn",
         BindingKind::Texture
         | BindingKind::Uniform

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use lamplight_bundle::{Binding, BindingKind, BindingSlot, Member, Shape, TextureShape};
+use lamplight_bundle::{Binding, BindingSlot, Member, Shape, TextureShape};
 
 use super::described::{Described, binding_words};
 use super::reading::{ReadBinding, ReadMember, ReadType, Reading, same_kind};
@@ -133,7 +133,7 @@ pub fn compare_binding(found: &mut Differences, read: &ReadBinding, reflected: &
     if let Some(read) = read.kind.filter(|read| !same_kind(*read, *kind)) {
         found.same(&format!("the kind of {what} is"), &read, kind);
     }
-    let is_buffer = matches!(kind, BindingKind::Uniform | BindingKind::Storage);
+    let is_buffer = kind.is_buffer();
     if read.kind.is_some() && read.register.is_none() {
         found.same(&format!("the number of bindings of {what} is"), &read.count, count);
     }

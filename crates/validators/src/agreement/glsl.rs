@@ -3,7 +3,7 @@
 //!
 //! Only declarations are compiled. A version that Vulkan does not know is replaced by the next one.
 
-use lamplight_bundle::{Binding, BindingKind, BindingSlot, Combined, Reflection, Stage};
+use lamplight_bundle::{Binding, BindingSlot, Combined, Reflection, Stage};
 
 use super::compare::{Differences, SlotRules, compare_binding, compare_reading};
 use super::described::Described;
@@ -75,7 +75,7 @@ pub fn compiled_differences(bytes: &[u8], described: Described<'_>) -> Result<Ve
 }
 
 fn is_block(binding: &Binding) -> bool {
-    matches!(binding.kind, BindingKind::Uniform | BindingKind::Storage)
+    binding.kind.is_buffer()
 }
 
 /// Takes the textures out of a reading.

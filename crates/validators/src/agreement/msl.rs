@@ -41,7 +41,7 @@ pub fn msl_differences(text: &str, described: Described<'_>) -> Result<Vec<Strin
 fn is_at(binding: &Binding, slot: &BindingSlot, found: &ReadBinding) -> bool {
     let table = match binding.kind {
         _ if binding.count.is_some() => "buffer",
-        BindingKind::Uniform | BindingKind::Storage => "buffer",
+        BindingKind::Uniform | BindingKind::Storage | BindingKind::Immediate => "buffer",
         BindingKind::Texture | BindingKind::StorageTexture => "texture",
         BindingKind::Sampler | BindingKind::ComparisonSampler => "sampler",
     };

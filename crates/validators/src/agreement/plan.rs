@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use lamplight_bundle::{Binding, BindingKind, Reflection, Stage, Target};
+use lamplight_bundle::{Binding, Reflection, Stage, Target};
 use lamplight_files::output::Scratch;
 use lamplight_generate::cache::hash_parts;
 use lamplight_tools::metal::{Clang, MslRefusal, validate_declarations};
@@ -178,7 +178,6 @@ type BufferSet<'o> = (Stage, Option<[u32; 3]>, Vec<&'o Binding>);
 
 fn buffer_set(output: &Output) -> BufferSet<'_> {
     let Reflection { stage, workgroup_size, bindings, .. } = &*output.reflection;
-    let is_buffer =
-        |one: &&Binding| matches!(one.kind, BindingKind::Uniform | BindingKind::Storage);
+    let is_buffer = |one: &&Binding| one.kind.is_buffer();
     (*stage, *workgroup_size, bindings.iter().filter(is_buffer).collect())
 }

@@ -177,10 +177,11 @@ impl ReadSize {
 }
 
 /// Whether a reader may take what a reflection has for what it found. Samplers that compare look
-/// like others in most languages.
+/// like others in most languages, and immediates are uniform buffers in them.
 pub fn same_kind(found: BindingKind, reflected: BindingKind) -> bool {
     let plain = |kind| match kind {
         BindingKind::ComparisonSampler => BindingKind::Sampler,
+        BindingKind::Immediate => BindingKind::Uniform,
         kind => kind,
     };
     plain(found) == plain(reflected)

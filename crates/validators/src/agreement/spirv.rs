@@ -26,6 +26,7 @@ const WORKGROUP_SIZE: u32 = 25;
 /// Storage classes.
 const UNIFORM_CONSTANT: u32 = 0;
 const UNIFORM: u32 = 2;
+const PUSH_CONSTANT: u32 = 9;
 const STORAGE_BUFFER: u32 = 12;
 
 /// Decorations.
@@ -114,13 +115,13 @@ impl<'w> SpirvModule<'w> {
         &self,
         (id, ty, class): (u32, u32, u32),
     ) -> Result<Option<ReadBinding>, String> {
-        if ![UNIFORM_CONSTANT, UNIFORM, STORAGE_BUFFER].contains(&class) {
+        if ![UNIFORM_CONSTANT, UNIFORM, PUSH_CONSTANT, STORAGE_BUFFER].contains(&class) {
             return Ok(None);
         }
         let pointee = self.pointees.get(&ty).ok_or("a variable's type is no pointer")?;
         let (bound, count) = self.bound_type(*pointee);
         let kind = self.kind_of(bound, class);
-        let is_buffer = matches!(kind, BindingKind::Uniform | BindingKind::Storage);
+        let is_buffer = kind.is_buffer();
         // The block has the name that hosts of OpenGL look up.
         let name = self.types.name(if is_buffer { bound } else { id });
         Ok(Some(ReadBinding {
@@ -148,6 +149,7 @@ impl<'w> SpirvModule<'w> {
         let is_buffer_block = self.types.is_decorated(ty, BUFFER_BLOCK);
         match (class, self.types.opcode(ty)) {
             (STORAGE_BUFFER, _) => BindingKind::Storage,
+            (PUSH_CONSTANT, _) => BindingKind::Immediate,
             (UNIFORM, _) if is_buffer_block => BindingKind::Storage,
             (UNIFORM, _) => BindingKind::Uniform,
             (_, Some(TYPE_SAMPLER)) => BindingKind::Sampler,

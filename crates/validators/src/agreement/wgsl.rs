@@ -124,17 +124,22 @@ fn assumed_values(module: &Module) -> PipelineConstants {
 
 fn read_global(module: &Module, variable: &GlobalVariable) -> Result<Option<ReadBinding>, String> {
     let GlobalVariable { name, space, binding, ty, init: _, memory_decorations: _ } = variable;
-    let Some(place) = binding else { return Ok(None) };
+    if binding.is_none() && *space != AddressSpace::Immediate {
+        return Ok(None);
+    }
     let (bound, count) = match module.types[*ty].inner {
         TypeInner::BindingArray { base, size } => (base, Some(array_count(size))),
         _ => (*ty, None),
     };
-    let is_buffer = matches!(space, AddressSpace::Uniform | AddressSpace::Storage { access: _ });
+    let is_buffer = matches!(
+        space,
+        AddressSpace::Uniform | AddressSpace::Immediate | AddressSpace::Storage { access: _ }
+    );
     let ty = is_buffer.then(|| read_type(module, bound, MOST_LEVELS)).transpose()?;
     let (kind, dimension) = read_kind(module, *space, bound);
     Ok(Some(ReadBinding {
-        space: Some(place.group),
-        index: Some(place.binding),
+        space: binding.map(|place| place.group),
+        index: binding.map(|place| place.binding),
         register: None,
         name: name.clone(),
         kind,
@@ -151,6 +156,7 @@ fn read_kind(
 ) -> (Option<BindingKind>, Option<String>) {
     match (space, &module.types[bound].inner) {
         (AddressSpace::Uniform, _) => (Some(BindingKind::Uniform), None),
+        (AddressSpace::Immediate, _) => (Some(BindingKind::Immediate), None),
         (AddressSpace::Storage { access: _ }, _) => (Some(BindingKind::Storage), None),
         (_, TypeInner::Sampler { comparison: false }) => (Some(BindingKind::Sampler), None),
         (_, TypeInner::Sampler { comparison: true }) => {

@@ -10,7 +10,7 @@ use crate::frame::{BindingPlace, Drawing, Frame};
 use crate::gpu::draw::Bindings;
 use crate::gpu::draw::Targets;
 use crate::shipped::{ColorFormat, Shipped};
-use lamplight_bundle::{SamplerHeap, Stage, Target};
+use lamplight_bundle::{BindingKind, SamplerHeap, Stage, Target};
 use lamplight_diagnostic::{Diagnostic, codes};
 
 /// A stage as a shader module of the device.
@@ -139,6 +139,11 @@ impl WgpuDevice {
 /// Why the stage cannot be drawn here, if something in it is not supported.
 fn stage_lacks(stage: &Shipped) -> Option<&'static str> {
     match stage.target {
+        Target::WGSL | Target::SPIRV
+            if stage.reflection.bindings.iter().any(|one| one.kind == BindingKind::Immediate) =>
+        {
+            Some("immediates are set for compute stages only")
+        }
         Target::WGSL if stage.reflection.stage == Stage::Fragment => stage.lacks_of_webgpu(),
         Target::HLSL => hlsl_lacks(&stage.text()),
         _ => None,

@@ -32,7 +32,7 @@ impl OpenGl {
             for (binding, bytes) in given {
                 let place = (binding.group, binding.binding);
                 let of = match binding.kind {
-                    BindingKind::Uniform => glow::UNIFORM_BUFFER,
+                    BindingKind::Uniform | BindingKind::Immediate => glow::UNIFORM_BUFFER,
                     _ => glow::SHADER_STORAGE_BUFFER,
                 };
                 let buffer = bind_buffer(gl, of, slot(shipped, place)?, bytes)?;
