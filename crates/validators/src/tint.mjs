@@ -1,5 +1,6 @@
 // Validates WGSL: one path of a file for each line of standard input. Writes a line of JSON for each
-// text that is refused, with its first mistake, and one that says how many were validated.
+// text that is refused, with its first mistake, and one that says how many were validated. Each has a
+// mark, since Dawn writes warnings to the same output.
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { pathToFileURL } from "node:url";
@@ -31,4 +32,4 @@ for (const [index, file] of files.entries()) {
   }
 }
 lines.push({ validated: files.length });
-process.stdout.write(lines.map((line) => JSON.stringify(line) + "\n").join(""), () => process.exit(0));
+process.stdout.write(lines.map((line) => `tint: ${JSON.stringify(line)}\n`).join(""), () => process.exit(0));

@@ -40,6 +40,9 @@ struct PackageJson {
     version: String,
 }
 
+/// What each line of the script begins with. No line of an output does.
+const MARK: &str = "tint: ";
+
 impl Tint {
     /// Tint, installed in a folder or not yet.
     pub fn at(folder: impl Into<PathBuf>) -> Self {
@@ -88,7 +91,8 @@ impl Tint {
         let arguments = ["--input-type=module", "--eval", SCRIPT, "--", &folder];
         let printed = NODE.pipe(&arguments, lines.join("\n").as_bytes())?;
         let printed = String::from_utf8_lossy(&printed);
-        let mut lines: Vec<&str> = printed.lines().collect();
+        let mut lines: Vec<&str> =
+            printed.lines().filter_map(|line| line.strip_prefix(MARK)).collect();
         let done = lines.pop().and_then(|line| serde_json::from_str::<Done>(line).ok());
         if done.is_none_or(|done| done.validated != files.len()) {
             return Err(format!("Tint validated not all of {} texts", files.len()));
