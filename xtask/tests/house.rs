@@ -4,6 +4,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "house/destructured.rs"]
+mod destructured;
 #[path = "house/lengths.rs"]
 mod lengths;
 #[path = "house/links.rs"]
@@ -46,6 +48,8 @@ fn rules() -> Vec<Trial> {
         Trial::test("house::one_way_to_the_terminal", one_way::to_the_terminal),
         Trial::test("house::one_rename", one_way::to_rename),
         Trial::test("house::promises_have_tests", promises::have_tests),
+        Trial::test("house::destructured", destructured::in_full),
+        Trial::test("house::destructured_is_seen", destructured::is_seen),
         Trial::test("house::lengths", lengths::are_kept),
         Trial::test("house::lengths_are_counted", lengths::are_counted),
     ]

@@ -64,6 +64,9 @@ pub struct Varying {
     /// `center`, `centroid` or `sample`, between stages.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sampling: Option<String>,
+    /// Which source for blending an output is, with two sources: 0 or 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blend_src: Option<u32>,
 }
 
 /// What a binding holds.

@@ -295,6 +295,7 @@ impl Module {
                     shape: None,
                     interpolation: interpolation.map(str::to_owned),
                     sampling: perspective.map(str::to_owned),
+                    blend_src: None,
                 });
                 Ok(location + 1)
             }

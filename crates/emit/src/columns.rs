@@ -194,11 +194,12 @@ pub fn taken_from_values<'m>(
 
 /// Whether a member is an array of matrices of two rows.
 fn has_columns(module: &Module, structure: &TypeInner, member: u32) -> bool {
-    let TypeInner::Struct { members, .. } = structure else { return false };
+    let TypeInner::Struct { members, span: _ } = structure else { return false };
     let mut ty = members.get(member as usize).map(|member| &module.types[member.ty].inner);
     let mut is_array = false;
-    while let Some(TypeInner::Array { base, .. }) = ty {
+    while let Some(TypeInner::Array { base, size: _, stride: _ }) = ty {
         (is_array, ty) = (true, Some(&module.types[*base].inner));
     }
-    is_array && matches!(ty, Some(TypeInner::Matrix { rows: VectorSize::Bi, .. }))
+    is_array
+        && matches!(ty, Some(TypeInner::Matrix { rows: VectorSize::Bi, columns: _, scalar: _ }))
 }

@@ -60,7 +60,14 @@ fn uses_primitive_index(module: &Module) -> bool {
 fn takes_built_in(module: &Module, is_it: impl Fn(BuiltIn) -> bool) -> bool {
     let is_bound = |binding: &Option<Binding>| match binding {
         Some(Binding::BuiltIn(built_in)) => is_it(*built_in),
-        Some(Binding::Location { .. }) | None => false,
+        Some(Binding::Location {
+            location: _,
+            interpolation: _,
+            sampling: _,
+            blend_src: _,
+            per_primitive: _,
+        })
+        | None => false,
     };
     let has_member = module.types.iter().any(|(_, one)| match &one.inner {
         TypeInner::Struct { members, span: _ } => {

@@ -89,7 +89,10 @@ pub fn ends_of(module: &Module, ty: Handle<Type>, rules: Rules) -> Vec<u32> {
 pub fn is_endless_struct(module: &Module, ty: Handle<Type>) -> bool {
     let TypeInner::Struct { members, span: _ } = &module.types[ty].inner else { return false };
     members.last().is_some_and(|last| {
-        matches!(module.types[last.ty].inner, TypeInner::Array { size: ArraySize::Dynamic, .. })
+        matches!(
+            module.types[last.ty].inner,
+            TypeInner::Array { size: ArraySize::Dynamic, base: _, stride: _ }
+        )
     })
 }
 

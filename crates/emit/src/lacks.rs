@@ -329,9 +329,9 @@ fn two_rows(module: &Module) -> impl Iterator<Item = Span> {
 
 fn has_two_rows(module: &Module, ty: Handle<Type>) -> bool {
     match &module.types[ty].inner {
-        TypeInner::Matrix { rows, .. } => *rows == VectorSize::Bi,
-        TypeInner::Array { base, .. } => has_two_rows(module, *base),
-        TypeInner::Struct { members, .. } => {
+        TypeInner::Matrix { rows, columns: _, scalar: _ } => *rows == VectorSize::Bi,
+        TypeInner::Array { base, size: _, stride: _ } => has_two_rows(module, *base),
+        TypeInner::Struct { members, span: _ } => {
             members.iter().any(|member| has_two_rows(module, member.ty))
         }
         _ => false,
@@ -377,8 +377,11 @@ fn arrays_of_arrays(
 ) -> impl Iterator<Item = (&'static str, Span)> {
     let what = NESTED.lacking(version);
     module.types.iter().filter_map(move |(handle, ty)| match &ty.inner {
-        TypeInner::Array { base, .. } => {
-            let is_array = matches!(module.types[*base].inner, TypeInner::Array { .. });
+        TypeInner::Array { base, size: _, stride: _ } => {
+            let is_array = matches!(
+                module.types[*base].inner,
+                TypeInner::Array { base: _, size: _, stride: _ }
+            );
             what.filter(|_| is_array).map(|what| (what, first_use(module, &|ty| ty == handle)))
         }
         _ => None,
@@ -491,7 +494,16 @@ fn image_kind(
 /// The types and bindings of what enters and leaves entry points.
 fn entry_values(module: &Module) -> impl Iterator<Item = (Handle<Type>, Option<&Binding>)> {
     module.entry_points.iter().flat_map(|point| {
-        let Function { arguments, result, .. } = &point.function;
+        let Function {
+            arguments,
+            result,
+            name: _,
+            local_variables: _,
+            expressions: _,
+            named_expressions: _,
+            body: _,
+            diagnostic_filter_leaf: _,
+        } = &point.function;
         let given = arguments.iter().map(|given| (given.ty, given.binding.as_ref()));
         given.chain(result.iter().map(|result| (result.ty, result.binding.as_ref())))
     })

@@ -8,8 +8,10 @@ use naga::{Handle, Module, Type, TypeInner};
 /// The type as WGSL declares it; a struct by its name.
 pub fn type_name(module: &Module, ty: Handle<Type>) -> String {
     match &module.types[ty] {
-        Type { name: Some(name), inner: TypeInner::Struct { .. } } => name.clone(),
-        Type { name: None, inner: TypeInner::Struct { .. } } => "struct".to_owned(),
+        Type { name: Some(name), inner: TypeInner::Struct { members: _, span: _ } } => name.clone(),
+        Type { name: None, inner: TypeInner::Struct { members: _, span: _ } } => {
+            "struct".to_owned()
+        }
         _ => module.to_ctx().type_to_string(ty),
     }
 }

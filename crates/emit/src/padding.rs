@@ -147,15 +147,15 @@ impl PaddedTypes {
                 members.iter_mut().for_each(|member| member.ty = self.ty(member.ty));
             }
             TypeInner::Scalar(_)
-            | TypeInner::Vector { .. }
-            | TypeInner::Matrix { .. }
-            | TypeInner::CooperativeMatrix { .. }
+            | TypeInner::Vector { size: _, scalar: _ }
+            | TypeInner::Matrix { columns: _, rows: _, scalar: _ }
+            | TypeInner::CooperativeMatrix { columns: _, rows: _, scalar: _, role: _ }
             | TypeInner::Atomic(_)
-            | TypeInner::ValuePointer { .. }
-            | TypeInner::Image { .. }
-            | TypeInner::Sampler { .. }
-            | TypeInner::AccelerationStructure { .. }
-            | TypeInner::RayQuery { .. } => {}
+            | TypeInner::ValuePointer { size: _, scalar: _, space: _ }
+            | TypeInner::Image { dim: _, arrayed: _, class: _ }
+            | TypeInner::Sampler { comparison: _ }
+            | TypeInner::AccelerationStructure { vertex_return: _ }
+            | TypeInner::RayQuery { vertex_return: _ } => {}
         }
         inner
     }
@@ -315,7 +315,7 @@ fn padded_constants(
         // naga computes members of constants; those of overrides are no structures.
         if let Expression::AccessIndex { base, index: _ } = expression
             && matches!(old[base], Expression::Compose { ty, .. } | Expression::ZeroValue(ty)
-                if matches!(module.types[ty].inner, TypeInner::Struct { .. }))
+                if matches!(module.types[ty].inner, TypeInner::Struct { members: _, span: _ }))
         {
             return Err("a constant takes a member of a structure that needs padding".to_owned());
         }

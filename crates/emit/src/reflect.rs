@@ -84,7 +84,8 @@ fn entry_outputs(module: &Module, function: &naga::Function) -> Vec<Varying> {
 /// Locations first, by number; then built-ins, by name.
 fn sorted_varyings(mut varyings: Vec<Varying>) -> Vec<Varying> {
     varyings.sort_by_key(|varying| {
-        (varying.location.is_none(), varying.location, varying.builtin.clone())
+        let Varying { location, builtin, blend_src, .. } = varying;
+        (location.is_none(), *location, *blend_src, builtin.clone())
     });
     varyings
 }
@@ -98,7 +99,7 @@ fn bound_varyings(
 ) -> Vec<Varying> {
     match (binding, &module.types[ty].inner) {
         (Some(binding), _) => vec![make_varying(module, name, ty, binding)],
-        (None, TypeInner::Struct { members, .. }) => members
+        (None, TypeInner::Struct { members, span: _ }) => members
             .iter()
             .flat_map(|member| {
                 bound_varyings(module, member.name.as_deref(), member.ty, member.binding.as_ref())
@@ -122,15 +123,23 @@ fn make_varying(
         shape: shape_of(module, ty),
         interpolation: None,
         sampling: None,
+        blend_src: None,
     };
     match *binding {
         naga::Binding::BuiltIn(builtin) => {
             Varying { builtin: Some(builtin_name(builtin)), ..blank }
         }
-        naga::Binding::Location { location, interpolation, sampling, .. } => Varying {
+        naga::Binding::Location {
+            location,
+            interpolation,
+            sampling,
+            blend_src,
+            per_primitive: _,
+        } => Varying {
             location: Some(location),
             interpolation: interpolation.map(interpolation_name),
             sampling: sampling.map(sampling_name),
+            blend_src,
             ..blank
         },
     }
@@ -213,14 +222,14 @@ pub(super) fn binding_count(module: &Module, ty: Handle<Type>) -> Option<u32> {
 pub(super) fn binding_kind(module: &Module, variable: &GlobalVariable) -> Option<BindingKind> {
     match (variable.space, &module.types[element_type(module, variable.ty)].inner) {
         (AddressSpace::Uniform, _) => Some(BindingKind::Uniform),
-        (AddressSpace::Storage { .. }, _) => Some(BindingKind::Storage),
+        (AddressSpace::Storage { access: _ }, _) => Some(BindingKind::Storage),
         (AddressSpace::Immediate, _) => Some(BindingKind::Immediate),
         (_, TypeInner::Sampler { comparison: true }) => Some(BindingKind::ComparisonSampler),
         (_, TypeInner::Sampler { comparison: false }) => Some(BindingKind::Sampler),
-        (_, TypeInner::Image { class: ImageClass::Storage { .. }, .. }) => {
+        (_, TypeInner::Image { class: ImageClass::Storage { format: _, access: _ }, .. }) => {
             Some(BindingKind::StorageTexture)
         }
-        (_, TypeInner::Image { .. }) => Some(BindingKind::Texture),
+        (_, TypeInner::Image { dim: _, arrayed: _, class: _ }) => Some(BindingKind::Texture),
         _ => None,
     }
 }
@@ -228,17 +237,19 @@ pub(super) fn binding_kind(module: &Module, variable: &GlobalVariable) -> Option
 /// Members of a struct, or of the elements of an array of structs.
 fn struct_members(module: &Module, ty: Handle<Type>, layouter: &Layouter) -> Vec<Member> {
     match &module.types[ty].inner {
-        TypeInner::Struct { members, .. } => {
+        TypeInner::Struct { members, span: _ } => {
             members.iter().map(|member| self::make_member(module, member, layouter)).collect()
         }
-        TypeInner::Array { base, .. } => self::struct_members(module, *base, layouter),
+        TypeInner::Array { base, size: _, stride: _ } => {
+            self::struct_members(module, *base, layouter)
+        }
         _ => Vec::new(),
     }
 }
 
 fn make_member(module: &Module, member: &naga::StructMember, layouter: &Layouter) -> Member {
     let stride = match module.types[member.ty].inner {
-        TypeInner::Array { stride, .. } => Some(stride),
+        TypeInner::Array { stride, base: _, size: _ } => Some(stride),
         _ => None,
     };
     Member {

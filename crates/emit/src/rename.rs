@@ -22,7 +22,7 @@ pub fn rename_taken(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<
     let types: Vec<_> = module.types.iter().map(|(handle, ty)| (handle, ty.clone())).collect();
     for (handle, Type { mut name, mut inner }) in types {
         new(&mut name);
-        if let TypeInner::Struct { members, .. } = &mut inner {
+        if let TypeInner::Struct { members, span: _ } = &mut inner {
             members.iter_mut().for_each(|member| new(&mut member.name));
         }
         let changed = Type { name, inner };
@@ -67,7 +67,9 @@ pub fn rename_types_like_members(module: &Module) -> Option<Module> {
 }
 
 fn is_like_member(module: &Module, ty: &Type) -> bool {
-    let (TypeInner::Struct { .. }, Some(name)) = (&ty.inner, &ty.name) else { return false };
+    let (TypeInner::Struct { members: _, span: _ }, Some(name)) = (&ty.inner, &ty.name) else {
+        return false;
+    };
     // naga drops underscores at the end.
     let is_it = |member: &str| member.trim_end_matches('_') == name.trim_end_matches('_');
     members_of(module).filter_map(|member| member.name.as_deref()).any(is_it)
@@ -75,7 +77,7 @@ fn is_like_member(module: &Module, ty: &Type) -> bool {
 
 fn members_of(module: &Module) -> impl Iterator<Item = &StructMember> {
     module.types.iter().flat_map(|(_, ty)| match &ty.inner {
-        TypeInner::Struct { members, .. } => members.as_slice(),
+        TypeInner::Struct { members, span: _ } => members.as_slice(),
         _ => &[],
     })
 }

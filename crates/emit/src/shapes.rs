@@ -28,7 +28,7 @@ pub(super) fn shape_of(module: &Module, ty: Handle<Type>) -> Option<Shape> {
         }),
         TypeInner::Array { base, size, stride: _ } => {
             let element = match module.types[base].inner {
-                TypeInner::Array { .. } => Shape::default(),
+                TypeInner::Array { base: _, size: _, stride: _ } => Shape::default(),
                 _ => shape_of(module, base).unwrap_or_default(),
             };
             Some(Shape { count: Some(array_count(size)), ..element })

@@ -20,7 +20,8 @@ pub fn with_sizes(text: String, module: &Module) -> Result<String, String> {
         .types
         .iter()
         .filter(|(handle, ty)| {
-            matches!(ty.inner, TypeInner::Struct { .. }) && !is_predeclared(module, *handle)
+            matches!(ty.inner, TypeInner::Struct { members: _, span: _ })
+                && !is_predeclared(module, *handle)
         })
         .map(|(handle, _)| handle);
     let mut to = String::with_capacity(text.len() + 64);

@@ -50,10 +50,12 @@ fn mark_types(
     for (handle, found) in module.types.iter() {
         let name = match (&found.name, &found.inner) {
             _ if predeclared.contains(&handle) => continue,
-            (Some(name), TypeInner::Struct { .. }) => Some(names.mark(name)),
+            (Some(name), TypeInner::Struct { members: _, span: _ }) => Some(names.mark(name)),
             // The result of the entry point that naga makes of a GLSL `main`.
-            (None, TypeInner::Struct { .. }) if is_function => Some(mark::write_mark(SCRATCH)),
-            (_, TypeInner::Array { .. }) => {
+            (None, TypeInner::Struct { members: _, span: _ }) if is_function => {
+                Some(mark::write_mark(SCRATCH))
+            }
+            (_, TypeInner::Array { base: _, size: _, stride: _ }) => {
                 Some(array_name(marked, found).ok_or(Reason::Declaration)?)
             }
             (Some(_), _) => None,

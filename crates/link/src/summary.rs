@@ -65,7 +65,7 @@ pub struct TextureShape {
 pub fn name_of(module: &Module, variable: &GlobalVariable) -> Option<String> {
     match (&variable.name, &module.types[variable.ty].inner) {
         (Some(name), _) => Some(name.clone()),
-        (None, TypeInner::Struct { members, .. }) => members.first()?.name.clone(),
+        (None, TypeInner::Struct { members, span: _ }) => members.first()?.name.clone(),
         _ => None,
     }
 }

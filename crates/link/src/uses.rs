@@ -95,8 +95,10 @@ fn argument_for(
 ) -> Result<(Expression, bool), Reason> {
     let (space, base, is_value) = match module.types[ty].inner {
         TypeInner::Pointer { base, space } => (space, base, false),
-        TypeInner::Image { .. } | TypeInner::Sampler { .. } => (AddressSpace::Handle, ty, false),
-        TypeInner::BindingArray { .. } | TypeInner::ValuePointer { .. } => {
+        TypeInner::Image { dim: _, arrayed: _, class: _ }
+        | TypeInner::Sampler { comparison: _ } => (AddressSpace::Handle, ty, false),
+        TypeInner::BindingArray { base: _, size: _ }
+        | TypeInner::ValuePointer { size: _, scalar: _, space: _ } => {
             return Err(Reason::BindingArray);
         }
         _ => (AddressSpace::Function, ty, true),

@@ -218,7 +218,8 @@ fn is_memory(module: &Module, function: &Function, root: Root) -> bool {
         Root::Parameter(index) => function.arguments.get(index as usize).is_some_and(|argument| {
             matches!(
                 module.types[argument.ty].inner,
-                TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. }
+                TypeInner::Pointer { base: _, space: _ }
+                    | TypeInner::ValuePointer { size: _, scalar: _, space: _ }
             )
         }),
     }

@@ -41,7 +41,8 @@ pub fn may_be_refused(module: &Module) -> bool {
 /// Whether a structure or an array of a module has an atomic in it.
 fn has_inner_atomics(module: &Module) -> bool {
     module.types.iter().any(|(handle, ty)| match ty.inner {
-        TypeInner::Struct { .. } | TypeInner::Array { .. } => has_atomic(module, handle),
+        TypeInner::Struct { members: _, span: _ }
+        | TypeInner::Array { base: _, size: _, stride: _ } => has_atomic(module, handle),
         _ => false,
     })
 }

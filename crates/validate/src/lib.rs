@@ -360,10 +360,20 @@ fn with_capabilities(
 /// stage takes, and says what it does. naga accepts it, and its writers fail on it with an internal
 /// error.
 fn compute_with_inputs(module: &naga::Module) -> Option<(&str, &'static str)> {
-    let is_location =
-        |binding: &Option<naga::Binding>| matches!(binding, Some(naga::Binding::Location { .. }));
+    let is_location = |binding: &Option<naga::Binding>| {
+        matches!(
+            binding,
+            Some(naga::Binding::Location {
+                location: _,
+                interpolation: _,
+                sampling: _,
+                blend_src: _,
+                per_primitive: _
+            })
+        )
+    };
     let takes = |argument: &naga::FunctionArgument| match &module.types[argument.ty].inner {
-        naga::TypeInner::Struct { members, .. } => {
+        naga::TypeInner::Struct { members, span: _ } => {
             members.iter().any(|member| is_location(&member.binding))
         }
         _ => is_location(&argument.binding),

@@ -146,8 +146,11 @@ fn is_repeated(
     ty: Handle<Type>,
     expression: &Expression,
 ) -> Option<bool> {
-    let is_pointer =
-        matches!(types[ty].inner, TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. });
+    let is_pointer = matches!(
+        types[ty].inner,
+        TypeInner::Pointer { base: _, space: _ }
+            | TypeInner::ValuePointer { size: _, scalar: _, space: _ }
+    );
     let is_nameless = module.special_types.predeclared_types.values().any(|one| *one == ty);
     match expression {
         _ if is_pointer => Some(true),

@@ -57,9 +57,9 @@ impl Sizes<'_> {
     fn measure(&self, inner: &TypeInner) -> (u64, usize) {
         let part = |ty: Handle<Type>| (self.scalars_of(ty), self.depth_of(ty));
         match *inner {
-            TypeInner::Vector { size, .. } => (size as u64, 1),
-            TypeInner::Matrix { columns, rows, .. } => (columns as u64 * rows as u64, 1),
-            TypeInner::Array { base, size, .. } => {
+            TypeInner::Vector { size, scalar: _ } => (size as u64, 1),
+            TypeInner::Matrix { columns, rows, scalar: _ } => (columns as u64 * rows as u64, 1),
+            TypeInner::Array { base, size, stride: _ } => {
                 let (scalars, depth) = part(base);
                 let count = match size {
                     ArraySize::Constant(count) => u64::from(count.get()),
@@ -67,7 +67,7 @@ impl Sizes<'_> {
                 };
                 (scalars.saturating_mul(count), depth + 1)
             }
-            TypeInner::Struct { ref members, .. } => members
+            TypeInner::Struct { ref members, span: _ } => members
                 .iter()
                 .map(|member| part(member.ty))
                 .fold((0, 1), |sum, (scalars, depth)| {

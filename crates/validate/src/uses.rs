@@ -33,7 +33,7 @@ pub fn first_use(module: &Module, is_it: &dyn Fn(Handle<Type>) -> bool) -> Span 
     let globals = module.global_variables.iter().filter(|(_, global)| is_it(global.ty));
     let globals = globals.map(|(handle, _)| module.global_variables.get_span(handle));
     let holders = module.types.iter().filter(|(_, one)| match &one.inner {
-        TypeInner::Struct { members, .. } => members.iter().any(|member| is_it(member.ty)),
+        TypeInner::Struct { members, span: _ } => members.iter().any(|member| is_it(member.ty)),
         _ => false,
     });
     let holders = holders.map(|(handle, _)| module.types.get_span(handle));

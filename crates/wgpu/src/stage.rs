@@ -155,6 +155,7 @@ mod tests {
             }),
             interpolation: None,
             sampling: None,
+            blend_src: None,
         };
         let inputs = vec![input(Some(0), 3), input(None, 4), input(Some(2), 2)];
         let (stride, attributes) =

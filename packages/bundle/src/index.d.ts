@@ -65,6 +65,8 @@ export interface Varying {
   shape?: Shape;
   interpolation?: string;
   sampling?: string;
+  /** Which source for blending an output is, with two sources. */
+  blend_src?: number;
 }
 
 export interface Override {

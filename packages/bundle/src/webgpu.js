@@ -6,12 +6,12 @@ export { packBlock };
 
 const STAGES = { vertex: 1, fragment: 2, compute: 4 };
 
-/** More groups than any device has. */
+/** More than any device has. */
 const MOST_GROUPS = 64;
 
 const dashed = (name) => name.replaceAll("_", "-");
 
-/** What a layout says of a binding, but for its number and its stages. */
+/** What a layout says of a resource. */
 function resourceOf({ kind, size, writable, texture }) {
   const viewDimension = texture && dashed(texture.dimension);
   switch (kind) {
@@ -34,17 +34,15 @@ function resourceOf({ kind, size, writable, texture }) {
   }
 }
 
-const isImmediate = (kind) => kind === "immediate";
-
 /**
  * The entries of each group of a program's layout, by the number of the group.
  *
- * Throws where permutations bind different things in one place: then they need layouts of their
- * own, from the bindings of their reflections.
+ * Throws where permutations bind different things in one place: each needs a layout of its own.
  */
 export function layoutEntries(layout) {
   const groups = [];
-  for (const binding of layout.filter(({ kind }) => !isImmediate(kind))) {
+  for (const binding of layout) {
+    if (binding.kind === "immediate") continue;
     if (!(binding.group < MOST_GROUPS)) {
       throw new TypeError(`no device has a group ${binding.group}, which \`${binding.name}\` is in`);
     }
@@ -65,9 +63,10 @@ export function pipelineLayout(device, bundle, program, { language } = {}) {
   const groups = layoutEntries(all).map((entries, group) =>
     device.createBindGroupLayout({ label: `${program} group ${group}`, entries }),
   );
-  const immediateSize = Math.max(0, ...all.map(({ kind, size }) => (isImmediate(kind) ? size : 0)));
   const layout = device.createPipelineLayout({
-    label: program, bindGroupLayouts: groups, immediateSize,
+    label: program,
+    bindGroupLayouts: groups,
+    immediateSize: all.find((binding) => binding.kind === "immediate")?.size,
   });
   return { layout, groups };
 }

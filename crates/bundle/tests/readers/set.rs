@@ -97,6 +97,7 @@ fn vertex_unit() -> Unit {
         shape: Some(shape("f32", 3, 0)),
         interpolation: None,
         sampling: None,
+        blend_src: None,
     };
     let reflection =
         Reflection { inputs: vec![input], bindings: vec![camera], ..Reflection::of(Stage::Vertex) };

@@ -33,7 +33,7 @@ pub const TARGET: TargetEntry = TargetEntry {
 fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     // naga would write `sampler1D` here, which no driver of this version knows.
     let is_line = |ty: Handle<Type>| {
-        matches!(source.module.types[ty].inner, TypeInner::Image { dim: ImageDimension::D1, .. })
+        matches!(source.module.types[ty].inner, TypeInner::Image { dim: ImageDimension::D1, arrayed: _, class: _ })
     };
     if source.module.global_variables.iter().any(|(_, variable)| is_line(variable.ty)) {
         return Err("the language has no textures of one dimension".to_owned());

@@ -135,6 +135,7 @@ pub mod tests {
             shape: None,
             interpolation: None,
             sampling: None,
+            blend_src: None,
         }
     }
 
