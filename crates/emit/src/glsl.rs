@@ -4,6 +4,7 @@ use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer
 use naga::proc::BoundsCheckPolicies;
 use naga::{Expression, SampleLevel};
 
+use super::depths;
 use super::invariants;
 use super::lacks::{self, has_since};
 use super::padding;
@@ -29,12 +30,14 @@ pub fn write_glsl(
     version: Version,
     numbering: Numbering,
 ) -> Result<Emitted, String> {
-    if let Some(reason) = lacks::first_lack(source.module, version) {
+    let floats = depths::as_floats(source.module)?;
+    let (module, info) =
+        floats.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
+    if let Some(reason) = lacks::first_lack(module, version) {
         return Err(reason);
     }
-    let padded = padding::with_padding(source.module, source.info)?;
-    let (module, info) =
-        padded.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
+    let padded = padding::with_padding(module, info)?;
+    let (module, info) = padded.as_ref().map_or((module, info), |(module, info)| (module, info));
     write_padded(&EmitSource { module, info, ..*source }, version, numbering)
 }
 

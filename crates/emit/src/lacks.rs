@@ -12,7 +12,7 @@ use naga::{
     TypeInner, VectorSize,
 };
 
-use super::{columns, immediates, strides, targets};
+use super::{columns, depths, immediates, strides, targets};
 use lamplight_bundle::{Language, Target};
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
@@ -192,8 +192,10 @@ pub fn check_lacks(
         found.push(place.into_iter().fold(error, |error, span| error.at(span, label)));
     };
     let entries = targets::ALL.iter().filter(|entry| wanted.contains(&entry.target));
+    let floats = depths::as_floats(module).ok().flatten();
+    let in_glsl = floats.as_ref().map_or(module, |(module, _)| module);
     for (target, version) in entries.filter_map(|entry| Some((entry.target, entry.glsl?))) {
-        for (what, span) in lacking_features(module, version) {
+        for (what, span) in lacking_features(in_glsl, version) {
             refuse(lack_message(target, what), span, "it is written so");
         }
         for span in two_rows(module) {

@@ -12,6 +12,7 @@
 
 pub mod clip;
 mod columns;
+mod depths;
 mod descriptors;
 mod extensions;
 mod filters;
