@@ -11,6 +11,7 @@
 
 mod diagnostics;
 mod differential;
+mod mistakes;
 mod one_meaning;
 mod robust;
 mod scale;
@@ -21,6 +22,7 @@ fn main() -> std::process::ExitCode {
     lamplight_testing::run_tests(&[
         diagnostics::tests,
         differential::tests,
+        mistakes::tests,
         one_meaning::tests,
         robust::tests,
         scale::tests,

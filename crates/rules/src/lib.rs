@@ -7,6 +7,7 @@ mod attributes;
 mod behaviour;
 mod constants;
 mod layout;
+mod lookup;
 mod memory;
 mod names;
 mod parse;
@@ -19,6 +20,7 @@ use std::ops::Range;
 
 pub use constants::fold;
 pub use layout::{NestedAlignment, nested_alignments};
+pub use lookup::{Declared, Head, Lookup, Piece, Step};
 use syntax::Directive;
 pub use syntax::Severity;
 pub use uniformity::Summary;

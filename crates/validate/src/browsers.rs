@@ -91,5 +91,57 @@ fn describe(composed: &Composed, problem: &Problem, for_browsers: bool) -> Optio
             None => told,
         }
     });
+    let written =
+        written_help(composed.text.get(problem.place.range()).unwrap_or_default(), problem);
+    let told = written.into_iter().fold(told, Diagnostic::note);
     Some(help.into_iter().fold(told, |told, help| told.note(help)))
+}
+
+/// What to write, with the author's own text.
+fn written_help(text: &str, problem: &Problem) -> Option<String> {
+    match problem.rule {
+        Rule::Derivative if text.starts_with("textureSample(") => {
+            let level = text.strip_prefix("textureSample")?.strip_suffix(')')?;
+            Some(format!(
+                "help: write `let texel = {text};` before the branch and `texel` here, or \
+                 `textureSampleLevel{level}, 0.0)`"
+            ))
+        }
+        Rule::Derivative if text.ends_with(')') => {
+            Some(format!("help: write `let value = {text};` before the branch and `value` here"))
+        }
+        Rule::Barrier if text.ends_with(')') => Some(format!(
+            "help: end the branch with `}}` before it, and write `{text};` behind that"
+        )),
+        Rule::Precedence => bracketed(text, problem.message.split('`').nth(1)?)
+            .map(|text| format!("help: write `{text}`")),
+        Rule::Behaviour if problem.message.starts_with("this loop never ends") => {
+            Some("help: write `if ... { break; }` in it".to_owned())
+        }
+        Rule::Memory if problem.message.ends_with("that can be written") => {
+            Some("help: write `var<storage, read>` if it is only read".to_owned())
+        }
+        _ => None,
+    }
+}
+
+/// A text with brackets around both sides of its last operator of a kind, where they are more than one
+/// word.
+fn bracketed(text: &str, operator: &str) -> Option<String> {
+    let mut depth = 0_i32;
+    let mut found = None;
+    for (at, letter) in text.char_indices() {
+        match letter {
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth -= 1,
+            _ if depth == 0 && text[at..].starts_with(operator) => found = Some(at),
+            _ => {}
+        }
+    }
+    let at = found?;
+    let side = |text: &str| match text.trim() {
+        one if one.contains(' ') && !one.starts_with('(') => format!("({one})"),
+        one => one.to_owned(),
+    };
+    Some(format!("{} {operator} {}", side(&text[..at]), side(&text[at + operator.len()..])))
 }

@@ -10,6 +10,7 @@ use lamplight_diagnostic::{Diagnostic, nearest_name};
 use lamplight_syntax::wesl::blank::without_comments;
 use lamplight_syntax::words::{Lexeme, LexemeKind, is_word, leading_word, pieces, word_around};
 
+use super::advice::{note_unknown, note_unknown_glsl};
 use super::foreign::native_text;
 
 /// Functions and types of both languages that are often misspelt.
@@ -139,7 +140,7 @@ pub fn hint_unknown(
     if let Some(native) = native_text(composed.language, name) {
         return error.note(format!("help: in {spoken}, write {}", in_backticks(&native)));
     }
-    let locals = place.map_or_else(BTreeSet::new, |place| local_names(composed, &place));
+    let locals = place.as_ref().map_or_else(BTreeSet::new, |place| local_names(composed, place));
     let declared = composed.parts.iter().flat_map(|part| part.names.iter().map(String::as_str));
     let here: Vec<&str> =
         declared.chain(locals).chain(SHARED.iter().copied()).chain(own.iter().copied()).collect();
@@ -151,7 +152,13 @@ pub fn hint_unknown(
             let import = missing_import(composed, module, near);
             error.note(format!("help: did you mean the library's `{near}`? `{import}`"))
         }),
-        None => error,
+        None => {
+            let note = place.and_then(|place| match composed.language {
+                Language::Wesl => note_unknown(&composed.text, name, place.start),
+                Language::Glsl => note_unknown_glsl(&composed.text, name, place.start),
+            });
+            note.into_iter().fold(error, Diagnostic::note)
+        }
     }
 }
 
@@ -208,7 +215,7 @@ pub fn hint_member(error: Diagnostic, composed: &Composed, name: &str) -> Diagno
 fn missing_import(composed: &Composed, module: &str, name: &str) -> String {
     match composed.language {
         Language::Wesl => format!("import lamplight::{}::{name};", module.replace('/', "::")),
-        Language::Glsl => format!("#include \"lamplight/{module}.glsl\""),
+        Language::Glsl => format!("#include <lamplight/{module}.glsl>"),
     }
 }
 

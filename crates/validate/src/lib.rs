@@ -4,6 +4,7 @@
 //! naga recurses over what it reads, and it panics on some inputs. So its input is bounded first
 //! ([`limits`]), and every call runs on a large stack with panics caught ([`guard`]).
 
+mod advice;
 mod alias;
 mod alignments;
 mod atomics;

@@ -7,6 +7,8 @@ use naga::front::glsl::ErrorKind;
 use naga::front::{glsl, wgsl};
 use naga::valid::ValidationError;
 
+use super::advice::convert::with_short_types;
+use super::advice::{self, Mistake};
 use super::foreign::native_text;
 use super::hints::{enclosing_call, last_word};
 use super::locate::place_of_error;
@@ -14,7 +16,7 @@ use super::{halves, hints, parse_wgsl, uses, words};
 use lamplight_bundle::Language;
 use lamplight_compose::{Composed, Part};
 use lamplight_diagnostic::source::Span;
-use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_diagnostic::{Code, Diagnostic, Diagnostics, codes};
 use lamplight_syntax::words::is_word;
 
 /// An error of the WGSL parser, with all its labels and notes.
@@ -26,21 +28,22 @@ pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
         message if message.starts_with(OPERANDS) => "these operands do not go together".to_owned(),
         message => as_sentence(message),
     };
-    let mut diagnostic = Diagnostic::error(codes::WGSL_ERROR, &*message);
-    for (span, label) in error.labels() {
-        diagnostic = label_or_note(diagnostic, composed, span.to_range(), &as_sentence(label));
-    }
+    let labels =
+        error.labels().filter_map(|(span, label)| Some((span.to_range()?, as_sentence(label))));
+    let notes = error.notes().map(|note| {
+        as_sentence(&about_parameter(composed, error, note).unwrap_or(note.to_owned()))
+    });
+    let mut mistake =
+        Mistake { message: message.clone(), labels: labels.collect(), notes: notes.collect() };
+    let place = mistake.labels.first().map(|(range, _)| range.clone());
+    advice::advise_parsed(&composed.text, &mut mistake);
+    let mut diagnostic = mistaken(composed, codes::WGSL_ERROR, mistake);
     if diagnostic.labels.is_empty() {
         let message = |text: &str| Some(parse_wgsl(text).err()?.message().to_owned());
         if let Some(range) = place_of_error(&composed.text, &message) {
             diagnostic = label_or_note(diagnostic, composed, Some(range), "in this part");
         }
     }
-    diagnostic = error.notes().fold(diagnostic, |diagnostic, note| {
-        diagnostic
-            .note(as_sentence(&about_parameter(composed, error, note).unwrap_or(note.to_owned())))
-    });
-    let place = error.labels().next().and_then(|(span, _)| span.to_range());
     if let Some(name) = quoted_after(UNKNOWN, &message) {
         hints::hint_unknown(diagnostic, composed, name, place)
     } else if let Some(name) = quoted_after(NO_MEMBER, &message) {
@@ -48,6 +51,20 @@ pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
     } else {
         advised(diagnostic, composed, &message, place)
     }
+}
+
+/// An error with the types of the author, at the author's places.
+fn mistaken(composed: &Composed, code: &'static Code, mistake: Mistake) -> Diagnostic {
+    let Mistake { message, labels, notes } = mistake;
+    let worded = |text: &str| match composed.language {
+        Language::Wesl => with_short_types(text, &composed.text),
+        Language::Glsl => text.to_owned(),
+    };
+    let mut diagnostic = Diagnostic::error(code, worded(&message));
+    for (range, label) in labels {
+        diagnostic = label_or_note(diagnostic, composed, Some(range), &worded(&label));
+    }
+    notes.iter().fold(diagnostic, |diagnostic, note| diagnostic.note(worded(note)))
 }
 
 /// What a matrix is made of, for one that was made of something else.
@@ -208,7 +225,31 @@ pub fn validation_error(
         (*words == TYPE, range.as_ref().map_or(usize::MAX, ExactSizeIterator::len))
     });
     let sentence = words::validation_words(module, error.as_inner());
-    let diagnostic = Diagnostic::error(sentence.code.unwrap_or(fallback), sentence.message);
+    let code = sentence.code.unwrap_or(fallback);
+    let own = sentence_labels(&sentence, &spans);
+    let mut mistake = Mistake { message: sentence.message, labels: own, notes: Vec::new() };
+    if let (Some(wrong), Language::Wesl) = (&sentence.wrong, composed.language) {
+        advice::advise_typed(&composed.text, wrong, &mut mistake);
+    }
+    // What the function is, its name tells.
+    if mistake.labels.len() > 1 {
+        let whole = mistake.labels.iter().map(|(_, label)| label == FUNCTION).collect::<Vec<_>>();
+        let mut whole = whole.iter();
+        mistake.labels.retain(|_| whole.next() != Some(&true));
+    }
+    let diagnostic = mistaken(composed, code, mistake);
+    let diagnostic = label_use(diagnostic, composed, module, error.as_inner());
+    let diagnostic = label_named(diagnostic, composed, error.as_inner());
+    sentence.notes.into_iter().fold(diagnostic, |diagnostic, note| {
+        diagnostic.note(with_short_types(&note, &composed.text))
+    })
+}
+
+/// The places of an error of the validator, the most precise one first.
+fn sentence_labels(
+    sentence: &words::Sentence,
+    spans: &[(Option<Range<usize>>, &'static str)],
+) -> Vec<(Range<usize>, String)> {
     // A value within the statement is the better place.
     let is_within = |statement: &Range<usize>| {
         spans.iter().any(|(range, words)| {
@@ -220,18 +261,12 @@ pub fn validation_error(
     };
     let statement = sentence.statement.and_then(|span| span.to_range());
     let statement = statement.filter(|statement| !is_within(statement));
-    let diagnostic = statement.into_iter().fold(diagnostic, |diagnostic, range| {
-        label_or_note(diagnostic, composed, Some(range), "this statement")
-    });
-    let diagnostic = spans.into_iter().fold(diagnostic, |diagnostic, (range, words)| {
-        label_or_note(diagnostic, composed, range, words)
-    });
-    let diagnostic = sentence.beside.into_iter().fold(diagnostic, |diagnostic, (span, words)| {
-        label_or_note(diagnostic, composed, span.to_range(), &words)
-    });
-    let diagnostic = label_use(diagnostic, composed, module, error.as_inner());
-    let diagnostic = label_named(diagnostic, composed, error.as_inner());
-    sentence.notes.into_iter().fold(diagnostic, Diagnostic::note)
+    let of_statement = statement.into_iter().map(|range| (range, "this statement".to_owned()));
+    let of_spans =
+        spans.iter().filter_map(|(range, words)| Some((range.clone()?, (*words).to_owned())));
+    let beside = sentence.beside.iter();
+    let of_beside = beside.filter_map(|(span, words)| Some((span.to_range()?, words.clone())));
+    of_statement.chain(of_spans).chain(of_beside).collect()
 }
 
 /// Adds a label to a diagnostic about a type without a name: where it is first used.
@@ -352,6 +387,9 @@ fn label_or_note(
 /// The label for a value.
 const VALUE: &str = "this expression";
 
+/// The label for a function.
+const FUNCTION: &str = "this function";
+
 /// The label for a type.
 const TYPE: &str = "this type";
 
@@ -361,7 +399,7 @@ fn span_kind(context: &str) -> &'static str {
         ("::GlobalVariable", "this variable"),
         ("::LocalVariable", "this variable"),
         ("::Expression", VALUE),
-        ("::Function", "this function"),
+        ("::Function", FUNCTION),
         ("::Constant", "this constant"),
         ("::Override", "this override"),
         ("::EntryPoint", "this entry point"),

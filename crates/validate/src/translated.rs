@@ -4,13 +4,14 @@ use std::ops::Range;
 
 use lamplight_bundle::{Language, SourceClip, Stage};
 use lamplight_compose::{Composed, Segment, SourceMap};
-use lamplight_diagnostic::source::SourceId;
+use lamplight_diagnostic::source::{SourceId, Span};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Label, codes};
 use lamplight_glsl::tree::Stage as GlslStage;
 use lamplight_glsl::wgsl::{Clip, Fact, Options, Written};
 use lamplight_glsl::{check, is_for_vulkan, parse};
 use naga::ShaderStage;
 
+use super::advice::{self, Mistake};
 use super::{hints, limits, lint, on_large_stack, validate_for_some};
 
 /// How a location is found that fits the other stage.
@@ -102,7 +103,12 @@ pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnos
     let warnings = facts.list.iter().map(|(fact, at)| {
         let warning = Diagnostic::warning(codes::TRANSLATED_OTHERWISE, fact.to_string());
         let warning = match fact {
-            Fact::Location(..) => warning.note(OTHER_STAGE),
+            Fact::Location(name, location) => warning
+                .note(format!("help: write `layout(location = {location})` before `{name}`"))
+                .note(OTHER_STAGE),
+            Fact::Binding(name, taken, free) => warning.note(format!(
+                "help: `binding = {taken}` is taken: write `binding = {free}` before `{name}`"
+            )),
             _ => warning,
         };
         let place = Some(at.range()).filter(|range| !range.is_empty());
@@ -151,6 +157,9 @@ pub fn of_translation(error: Diagnostic) -> Diagnostic {
 
 /// Places in the composed text as places in the author's.
 fn in_authors_text(mut problems: Diagnostics, composed: &Composed) -> Diagnostics {
+    for problem in &mut problems {
+        advise(problem, &composed.text);
+    }
     let places: Vec<_> = problems
         .iter()
         .map(|problem| problem.labels.first().map(|label| label.span.range()))
@@ -165,6 +174,25 @@ fn in_authors_text(mut problems: Diagnostics, composed: &Composed) -> Diagnostic
     }
     let hinted = problems.into_iter().zip(places);
     hinted.map(|(problem, place)| with_hint(problem, composed, place)).collect()
+}
+
+/// Adds to an error in the places of the composed text what to write.
+fn advise(problem: &mut Diagnostic, text: &str) {
+    let labels = problem.labels.iter();
+    let mut mistake = Mistake {
+        message: problem.message.clone(),
+        labels: labels.map(|label| (label.span.range(), label.message.clone())).collect(),
+        notes: std::mem::take(&mut problem.notes),
+    };
+    // An error at the end of the text has no place.
+    mistake.labels.retain(|(range, _)| !range.is_empty());
+    advice::advise_glsl(text, &mut mistake);
+    let labels = mistake.labels.into_iter();
+    problem.labels = labels
+        .map(|(range, message)| Label { span: Span::new(COMPOSED, range), message })
+        .collect();
+    problem.message = mistake.message;
+    problem.notes = mistake.notes;
 }
 
 /// Whether a text ends in `let` or `var` and a name.

@@ -261,7 +261,8 @@ impl<'g> PreprocessorState<'g, '_> {
         );
         match self.version {
             Some(first) => {
-                self.expander.errors.push(error.at(line, "a second one").at(first, "the first one"))
+                let error = error.at(line, "a second one").at(first, "the first one");
+                self.expander.errors.push(error.note("help: leave this one out"));
             }
             // `open.part` already points behind this directive, so 1 means the first part of the
             // file.

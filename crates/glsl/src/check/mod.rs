@@ -369,6 +369,7 @@ impl<'a> Checker<'a> {
         self.size_arrays();
         self.refuse_recursion();
         self.refuse_early_tests();
+        self.refuse_same_locations();
         let unfinished: Vec<(At, String)> = self
             .shader
             .functions
@@ -395,6 +396,34 @@ impl<'a> Checker<'a> {
             {
                 var.ty = Type::Array(std::rc::Rc::clone(element), Some(*size));
             }
+        }
+    }
+
+    /// Two inputs, or two outputs, at one location: the components of one may be apart.
+    fn refuse_same_locations(&mut self) {
+        let mut taken: Vec<(bool, u32)> = Vec::new();
+        let mut found = Vec::new();
+        for var in &self.shader.vars {
+            let is_input = match var.place {
+                Place::Input => true,
+                Place::Output => false,
+                _ => continue,
+            };
+            let layout = &var.layout;
+            let (Some(location), None, None) = (layout.location, layout.component, layout.index)
+            else {
+                continue;
+            };
+            if taken.contains(&(is_input, location)) {
+                let free = (0..).find(|free| !taken.contains(&(is_input, *free)));
+                found.push((var.at, var.name.clone(), location, free.unwrap_or_default()));
+            }
+            taken.push((is_input, location));
+        }
+        for (at, name, location, free) in found {
+            let message = format!("`{name}` has the location {location}, which is taken");
+            let note = format!("write `layout(location = {free})` before `{name}`");
+            self.report(codes::BINDING_CONFLICT, at, &message, &note);
         }
     }
 

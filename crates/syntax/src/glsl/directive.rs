@@ -59,11 +59,11 @@ pub fn link_branches(module: &mut Module) {
     }
     for open in open {
         if let FilePart::Directive(_, span) = &module.parts[open.branches[0]] {
-            module.errors.push(unbalanced_directive(
-                "a conditional is never closed",
-                *span,
-                "without an `#endif`",
-            ));
+            let error =
+                unbalanced_directive("a conditional is never closed", *span, "without an `#endif`");
+            module
+                .errors
+                .push(error.note("help: write `#endif` on a line of its own where it ends"));
         }
     }
 }

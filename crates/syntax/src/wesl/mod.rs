@@ -3,6 +3,8 @@
 //! There is no syntax tree: composing needs items, scopes and conditions, and naga parses the
 //! composed text anyway.
 
+mod advice;
+pub use advice::unclosed_by_indentation;
 mod balance;
 pub mod blank;
 mod body;

@@ -2,6 +2,7 @@
 //! access to tokens by index. Identifiers become numbers, which are cheap to compare and can index
 //! tables.
 
+use crate::wesl::advice;
 use crate::wesl::balance::balance_brackets;
 use crate::wesl::blank::{block_comment, is_blank, line_comment};
 use crate::words::{begins_word, number_end, same_bytes, word_end};
@@ -100,7 +101,7 @@ pub fn tokenize_damaged(
     }
     if let Some(index) = open.last().filter(|_| !mistakes.is_unbalanced) {
         mistakes.is_unbalanced = true;
-        mistakes.add(unclosed_bracket(&tokens[*index as usize], source));
+        mistakes.add(unclosed_bracket(&tokens, *index as usize, text, source));
     }
     if mistakes.is_unbalanced {
         tokens = balance_brackets(&tokens, text);
@@ -153,28 +154,56 @@ fn close_bracket(
         )
         .at(scanner.span(start), "no open bracket before this"));
     };
-    let expected = match tokens[opener as usize].kind {
-        TokenKind::Mark(b'(') => b')',
-        TokenKind::Mark(b'[') => b']',
-        _ => b'}',
-    };
+    let TokenKind::Mark(opened) = tokens[opener as usize].kind else { return Ok(()) };
+    let expected = closer(opened);
     if mark != expected {
-        return Err(Diagnostic::error(
+        let error = Diagnostic::error(
             codes::UNBALANCED_BRACKET,
             format!("expected `{}`, found `{}`", expected as char, mark as char),
         )
         .at(scanner.span(start), format!("`{}` was expected here", expected as char))
-        .at(span_of(&tokens[opener as usize], scanner.source), "to close this"));
+        .at(span_of(&tokens[opener as usize], scanner.source), "to close this");
+        let before = span_of(&tokens[index - 1], scanner.source);
+        return Err(advice::missing_closer(scanner.text, before, expected as char, error));
     }
     tokens[index].partner = opener;
     tokens[opener as usize].partner = index as u32;
     Ok(())
 }
 
-fn unclosed_bracket(token: &Token, source: SourceId) -> Diagnostic {
+/// The error about a bracket that is open at the end. Where the author's indentation shows another one
+/// that is not closed, it is the place.
+fn unclosed_bracket(tokens: &[Token], index: usize, text: &str, source: SourceId) -> Diagnostic {
+    let token = &tokens[index];
     let mark = if let TokenKind::Mark(mark) = token.kind { mark as char } else { '{' };
-    Diagnostic::error(codes::UNBALANCED_BRACKET, format!("`{mark}` is never closed"))
-        .at(span_of(token, source), "opened here")
+    let error = Diagnostic::error(codes::UNBALANCED_BRACKET, format!("`{mark}` is never closed"));
+    let closes = |token: &&Token| {
+        token.kind == TokenKind::Mark(b'}') && token.partner as usize != tokens.len()
+    };
+    let pairs = tokens
+        .iter()
+        .filter(closes)
+        .map(|token| (tokens[token.partner as usize].start as usize, token.start as usize));
+    match advice::unclosed_by_indentation(text, pairs).filter(|_| mark == '{') {
+        Some((open, line)) => error
+            .at(
+                Span::new(source, open..open + 1),
+                "what closes it stands further left than this line",
+            )
+            .note(format!("help: write `}}` before line {line}")),
+        None => error
+            .at(span_of(token, source), "opened here")
+            .note(format!("help: write `{}` where it ends", closer(mark as u8) as char)),
+    }
+}
+
+/// The bracket that closes one.
+fn closer(mark: u8) -> u8 {
+    match mark {
+        b'(' => b')',
+        b'[' => b']',
+        _ => b'}',
+    }
 }
 
 fn span_of(token: &Token, source: SourceId) -> Span {
@@ -293,9 +322,9 @@ impl TokenScanner<'_> {
             format!("unexpected character `{}`", letter.escape_debug()),
         );
         match letter {
-            '#' => {
-                found.at(span, "WGSL has no preprocessor").note("help: use `import` and `@if(...)`")
-            }
+            '#' => found
+                .at(span, "WGSL has no preprocessor")
+                .note(advice::directive(self.text, self.at)),
             '?' => found
                 .at(span, "WGSL has no `?:`")
                 .note("help: `select(otherwise, value, condition)`"),
@@ -407,8 +436,10 @@ impl<'a> Tokens<'a> {
         } else {
             "the end of the file".to_owned()
         };
-        Diagnostic::error(codes::SYNTAX_ERROR, format!("expected {what}, found {found}"))
-            .at(self.span(at), format!("expected {what}"))
+        let error =
+            Diagnostic::error(codes::SYNTAX_ERROR, format!("expected {what}, found {found}"))
+                .at(self.span(at), format!("expected {what}"));
+        advice::advised(self, at, what, error)
     }
 
     /// Steps over the token if it is `mark`; otherwise an error.

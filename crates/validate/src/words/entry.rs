@@ -7,6 +7,7 @@ use super::{
     Sentence, foreign_words, function, inner_type_text, lacking_words, spaced_name, stage_name,
     stages, type_text,
 };
+use crate::advice::{Interface, Port, Variable, Wrong};
 use lamplight_diagnostic::codes;
 
 pub fn entry_words(
@@ -17,7 +18,10 @@ pub fn entry_words(
     let text = match error {
         EntryPointError::Conflict => "two entry points of one stage have this name".to_owned(),
         EntryPointError::MissingVertexOutputPosition => {
-            "a vertex shader must return `@builtin(position)`".to_owned()
+            return Sentence::plain("a vertex shader must return `@builtin(position)`").note(
+                "help: write `-> @builtin(position) vec4f`, or `@builtin(position) position: vec4f` in \
+                 the structure that it returns",
+            );
         }
         EntryPointError::UnexpectedEarlyDepthTest => {
             "only fragment shaders have an early depth test".to_owned()
@@ -32,10 +36,9 @@ pub fn entry_words(
         }
         EntryPointError::BindingCollision(handle) => return collision_words(module, *handle),
         EntryPointError::Argument(index, error) => {
-            return varying_words(module, error)
-                .note(format!("argument {} of the entry point", index + 1));
+            return at_port(module, point, Some(*index as usize), error);
         }
-        EntryPointError::Result(error) => return varying_words(module, error),
+        EntryPointError::Result(error) => return at_port(module, point, None, error),
         EntryPointError::Function(error) => {
             let nothing = Function::default();
             let of = point.map_or(&nothing, |point| &point.function);
@@ -67,6 +70,47 @@ pub fn entry_words(
     Sentence::plain(text)
 }
 
+/// The message about an input or an output, with what is needed to find it in the text.
+fn at_port(
+    module: &Module,
+    point: Option<&EntryPoint>,
+    parameter: Option<usize>,
+    error: &VaryingError,
+) -> Sentence {
+    let sentence = varying_words(module, error);
+    let Some(point) = point else { return sentence };
+    let member = match error {
+        VaryingError::MemberMissingBinding(index) => Some(*index as usize),
+        _ => None,
+    };
+    let interface = match error {
+        VaryingError::MissingBinding | VaryingError::MemberMissingBinding(_) => {
+            Interface::Unplaced { is_vertex: point.stage == naga::ShaderStage::Vertex }
+        }
+        VaryingError::InvalidInterpolationForInteger | VaryingError::MissingInterpolation => {
+            Interface::Interpolated
+        }
+        VaryingError::BindingCollision { .. } => Interface::Taken,
+        VaryingError::InvalidBuiltInType(built_in, _) => {
+            Interface::Typed { built_in: built_in_name(*built_in) }
+        }
+        VaryingError::InvalidBuiltInStage(_) => {
+            Interface::Foreign { stage: stage_name(point.stage) }
+        }
+        _ => return sentence,
+    };
+    // Which member an error is about is only known for those without a place.
+    let is_structure = parameter.is_some_and(|at| {
+        point.function.arguments.get(at).is_some_and(|argument| {
+            matches!(module.types[argument.ty].inner, naga::TypeInner::Struct { .. })
+        })
+    });
+    if is_structure && member.is_none() {
+        return sentence;
+    }
+    sentence.about(Wrong::Port(Port { entry: point.name.clone(), parameter, member }, interface))
+}
+
 /// The message for an operation that the stage of an entry point does not have.
 fn stage_words(module: &Module, point: Option<&EntryPoint>) -> Sentence {
     let found =
@@ -74,7 +118,8 @@ fn stage_words(module: &Module, point: Option<&EntryPoint>) -> Sentence {
     match found {
         Some((span, sentence)) => {
             let beside = Some((span, "not in this stage".to_owned()));
-            Sentence { beside, ..Sentence::plain(sentence) }
+            let plain = Sentence { beside, ..Sentence::plain(sentence) };
+            if sentence.starts_with("sampling") { plain.about(Wrong::Level) } else { plain }
         }
         None => Sentence::plain("this stage cannot do what the function does"),
     }
@@ -106,7 +151,8 @@ fn collision_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) 
     let beside = other.map(|(other, _)| {
         (module.global_variables.get_span(other), "has the same place".to_owned())
     });
-    Sentence { beside, ..Sentence::coded(codes::BINDING_CONFLICT, message) }
+    let wrong = Wrong::Variable(name.replace('`', ""), Variable::Collides);
+    Sentence { beside, ..Sentence::coded(codes::BINDING_CONFLICT, message) }.about(wrong)
 }
 
 pub fn varying_words(module: &Module, error: &VaryingError) -> Sentence {

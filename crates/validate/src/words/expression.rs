@@ -1,22 +1,36 @@
 //! Expressions.
 
+use naga::front::Typifier;
+use naga::proc::ResolveContext;
 use naga::valid::ExpressionError;
-use naga::{BinaryOperator, Module, UnaryOperator};
+use naga::{BinaryOperator, Expression, Function, Handle, Module, TypeInner, UnaryOperator};
 
-use super::function::mismatch_words;
+use super::function::{mismatch_words, value_type};
 use super::{
-    Sentence, foreign_words, inner_type_text, lacking_words, spaced_name, type_text, types,
+    Sentence, bare_type, foreign_words, inner_type_text, lacking_words, spaced_name, type_text,
+    types,
 };
+use crate::advice::Wrong;
 use lamplight_diagnostic::codes;
 
-pub fn expression_words(module: &Module, error: &ExpressionError) -> Sentence {
+pub fn expression_words(module: &Module, of: &Function, error: &ExpressionError) -> Sentence {
     use ExpressionError as E;
     let text = match error {
         E::InvalidBaseType(_) => "this has no members and no elements",
-        E::InvalidIndexType(_) => "an index is an integer",
+        E::InvalidIndexType(index) => {
+            let sentence = mismatch_words("an index is an integer");
+            return match value_type(module, of, *index) {
+                Some(found) => sentence.about(Wrong::Index { found }),
+                None => sentence,
+            };
+        }
         E::NegativeIndex(_) => "an index is not negative",
-        E::IndexOutOfBounds(_, index) => {
-            return Sentence::plain(format!("index {index} is out of bounds"));
+        E::IndexOutOfBounds(base, index) => {
+            let sentence = Sentence::plain(format!("index {index} is out of bounds"));
+            return match length_of(module, of, *base) {
+                Some(length) => sentence.about(Wrong::Bounds { length }),
+                None => sentence,
+            };
         }
         E::InvalidPointerType(_) => "there is nothing to be read here",
         E::InvalidArrayType(_) => "only arrays in storage buffers have a length to ask for",
@@ -31,24 +45,28 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Sentence {
             return Sentence::plain(format!("there is no zero of {}", type_text(module, *handle)));
         }
         E::IndexableLength(_) => "the length of this is not known",
-        E::InvalidUnaryOperandType(operator, _) => {
+        E::InvalidUnaryOperandType(operator, value) => {
             let operator = unary_sign(*operator);
-            return mismatch_words(format!("`{operator}` does not work with this type"));
+            let Some(found) = value_type(module, of, *value) else {
+                return mismatch_words(format!("`{operator}` does not work with this type"));
+            };
+            return mismatch_words(format!("`{operator}` does not work with `{found}`"))
+                .about(Wrong::Operand { operator, found });
         }
         E::InvalidBinaryOperandTypes { op, lhs_type, rhs_type, .. } => {
-            let (left, right) =
-                (inner_type_text(module, lhs_type), inner_type_text(module, rhs_type));
+            let (left, right) = (bare_type(module, lhs_type), bare_type(module, rhs_type));
             return mismatch_words(format!(
-                "`{}` does not work with {left} and {right}",
+                "`{}` does not work with `{left}` and `{right}`",
                 binary_sign(*op)
-            ));
+            ))
+            .about(Wrong::Operands { left, right });
         }
         E::SelectValuesTypeMismatch { accept, reject } => {
-            let (accept, reject) =
-                (inner_type_text(module, accept), inner_type_text(module, reject));
+            let (accept, reject) = (bare_type(module, accept), bare_type(module, reject));
             return mismatch_words(format!(
-                "the two choices have different types: {accept}, {reject}"
-            ));
+                "the two choices have different types: `{reject}`, `{accept}`"
+            ))
+            .about(Wrong::Choices { reject, accept });
         }
         E::SelectConditionNotABool { actual } => {
             return mismatch_words(format!(
@@ -89,17 +107,19 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Sentence {
         | E::InvalidSampleLevelBiasType(_)
         | E::InvalidSampleLevelBiasDimension(_)
         | E::InvalidSampleLevelGradientType(..)
-        | E::InvalidSampleClampCoordinateToEdge(_) => return texture_words(error),
+        | E::InvalidSampleClampCoordinateToEdge(_) => return texture_words(module, of, error),
         E::InvalidCastArgument => return mismatch_words("this cannot be converted to that type"),
         E::WrongArgumentCount(function) => {
             let name = spaced_name(&format!("{function:?}"));
             let message = format!("`{name}` takes another number of arguments");
             return Sentence::coded(codes::CALL_MISMATCH, message);
         }
-        E::InvalidArgumentType(function, index, _) => {
-            let name = spaced_name(&format!("{function:?}"));
+        E::InvalidArgumentType(function, index, value) => {
+            let name = spaced_name(&format!("{function:?}")).replace(' ', "");
+            let found = value_type(module, of, *value)
+                .map_or_else(|| "has a type".to_owned(), |found| format!("is `{found}`, a type"));
             let message =
-                format!("argument {} of `{name}` has a type that it does not take", index + 1);
+                format!("argument {} of `{name}` {found} that it does not take", index + 1);
             return Sentence::coded(codes::CALL_MISMATCH, message);
         }
         E::MissingCapabilities(capabilities) => return lacking_words(*capabilities),
@@ -113,7 +133,10 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Sentence {
                 inner_type_text(module, lhs_type)
             ));
         }
-        E::DivideByZero => "this divides by zero",
+        E::DivideByZero => {
+            return Sentence::plain("this divides by zero, and integers have no infinity")
+                .note("help: write another divisor than `0`, or test it before");
+        }
         E::InvalidRayQueryType(_) => return foreign_words("ray tracing"),
         E::InvalidCooperativeOperand(_) => return foreign_words("cooperative matrices"),
         E::NotInScope | E::FunctionArgumentDoesntExist(_) => {
@@ -127,7 +150,7 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Sentence {
 }
 
 /// The message for a wrong lookup of a texture, by what does not fit the texture.
-fn texture_words(error: &ExpressionError) -> Sentence {
+fn texture_words(module: &Module, of: &Function, error: &ExpressionError) -> Sentence {
     use ExpressionError as E;
     let text = match error {
         E::InvalidImageArrayIndex => {
@@ -142,10 +165,16 @@ fn texture_words(error: &ExpressionError) -> Sentence {
         E::InvalidImageArrayIndexType(_) | E::InvalidImageOtherIndexType(_) => {
             "a layer, a sample and a level are integers"
         }
-        E::InvalidImageCoordinateType(..) => "the coordinates do not fit the texture",
+        E::InvalidImageCoordinateType(dimension, value) => {
+            return coordinate_words(module, of, *dimension, *value);
+        }
         E::ComparisonSamplingMismatch { .. } => {
-            "a comparison needs a depth texture and a `sampler_comparison`; other lookups need a \
-             `sampler`"
+            return Sentence::coded(
+                codes::CALL_MISMATCH,
+                "a comparison needs a depth texture and a `sampler_comparison`; other lookups need \
+                 a `sampler`",
+            )
+            .note("help: declare the sampler as `sampler_comparison` for `textureSampleCompare`");
         }
         E::InvalidSampleOffsetExprType | E::InvalidSampleOffset(..) => {
             "the offset of a lookup is a constant, with one integer for each axis of the texture"
@@ -161,9 +190,68 @@ fn texture_words(error: &ExpressionError) -> Sentence {
         | E::InvalidSampleLevelGradientType(..) => {
             "the level, bias or gradient does not fit the texture"
         }
+        E::InvalidImageClass(naga::ImageClass::Sampled {
+            kind: naga::ScalarKind::Sint | naga::ScalarKind::Uint,
+            multi: false,
+        }) => {
+            return Sentence::coded(
+                codes::CALL_MISMATCH,
+                "textures of integers are not filtered, so they are loaded and not sampled",
+            )
+            .note("help: write `textureLoad(t, vec2u(texel), 0)`");
+        }
         _ => "this texture cannot be used in this way",
     };
     Sentence::coded(codes::CALL_MISMATCH, text)
+}
+
+/// Coordinates of another type than a texture has.
+fn coordinate_words(
+    module: &Module,
+    of: &Function,
+    dimension: naga::ImageDimension,
+    value: Handle<Expression>,
+) -> Sentence {
+    let axes = match dimension {
+        naga::ImageDimension::D1 => 1,
+        naga::ImageDimension::D2 => 2,
+        naga::ImageDimension::D3 | naga::ImageDimension::Cube => 3,
+    };
+    let loads = of.expressions.iter().any(
+        |(_, one)| matches!(one, Expression::ImageLoad { coordinate, .. } if *coordinate == value),
+    );
+    let (at, scalar) = if loads { (1, "u32") } else { (2, "f32") };
+    let expected = if axes == 1 { scalar.to_owned() } else { format!("vec{axes}<{scalar}>") };
+    let sentence = |found: &str| {
+        let message = format!("the texture needs coordinates of type `{expected}`{found}");
+        Sentence::coded(codes::CALL_MISMATCH, message)
+    };
+    match value_type(module, of, value) {
+        Some(found) => sentence(&format!(", and these are `{found}`")).about(Wrong::Coordinates {
+            at,
+            found,
+            expected,
+        }),
+        None => sentence(""),
+    }
+}
+
+/// The length of an array, a vector or a matrix.
+fn length_of(module: &Module, of: &Function, base: Handle<Expression>) -> Option<u32> {
+    let mut typifier = Typifier::new();
+    let context = ResolveContext::with_locals(module, &of.local_variables, &of.arguments);
+    typifier.grow(base, &of.expressions, &context).ok()?;
+    let inner = typifier.get(base, &module.types);
+    let inner = match inner {
+        TypeInner::Pointer { base, space: _ } => &module.types[*base].inner,
+        inner => inner,
+    };
+    match inner {
+        TypeInner::Array { size: naga::ArraySize::Constant(size), .. } => Some(size.get()),
+        TypeInner::Vector { size, .. } => Some(*size as u32),
+        TypeInner::Matrix { columns, .. } => Some(*columns as u32),
+        _ => None,
+    }
 }
 
 fn unary_sign(operator: UnaryOperator) -> &'static str {

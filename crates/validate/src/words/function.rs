@@ -5,13 +5,16 @@ use naga::proc::ResolveContext;
 use naga::valid::{CallError, FunctionError, LocalVariableError, SubgroupError};
 use naga::{Block, Expression, Function, Handle, Module, Statement};
 
-use super::{Sentence, expression, foreign_words, inner_type_text, lacking_words, type_text};
+use super::{
+    Sentence, bare_type, expression, foreign_words, inner_type_text, lacking_words, type_text,
+};
+use crate::advice::Wrong;
 use lamplight_diagnostic::codes;
 
 pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> Sentence {
     let text = match error {
         FunctionError::Expression { source, .. } => {
-            return expression::expression_words(module, source);
+            return expression::expression_words(module, of, source);
         }
         FunctionError::LocalVariable { handle, name, source } => {
             return local_words(module, of, *handle, name, source);
@@ -26,9 +29,13 @@ pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> 
             format!("what a call passes for the pointer `{name}` has another type")
         }
         FunctionError::BreakOutsideOfLoopOrSwitch => {
-            "`break` is outside of a loop or `switch`".to_owned()
+            return Sentence::plain("`break` is outside of a loop or `switch`")
+                .note("help: write `return` with a value to leave the function, or leave it out");
         }
-        FunctionError::ContinueOutsideOfLoop => "`continue` is outside of a loop".to_owned(),
+        FunctionError::ContinueOutsideOfLoop => {
+            return Sentence::plain("`continue` is outside of a loop")
+                .note("help: write `return` to leave the function, or leave it out");
+        }
         FunctionError::InvalidReturnSpot => "`return` is in a `continuing` block".to_owned(),
         FunctionError::InvalidReturnType { expression, expected_ty } => {
             return returned_words(module, of, *expression, *expected_ty);
@@ -39,10 +46,15 @@ pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> 
         FunctionError::InvalidSwitchType(_) => "`switch` needs an integer".to_owned(),
         FunctionError::ConflictingSwitchCase(_) => "a case occurs twice".to_owned(),
         FunctionError::ConflictingCaseType => "the cases have different types".to_owned(),
-        FunctionError::MissingDefaultCase => "`switch` needs a `default`".to_owned(),
+        FunctionError::MissingDefaultCase => {
+            return Sentence::plain("`switch` needs a `default`")
+                .note("help: write `default: {}` as its last case");
+        }
         FunctionError::MultipleDefaultCases => "`switch` has several `default`s".to_owned(),
         FunctionError::LastCaseFallTrough => "the last case does not end in `break`".to_owned(),
-        FunctionError::InvalidStorePointer(_) => "this expression is not assignable".to_owned(),
+        FunctionError::InvalidStorePointer(pointer) => {
+            return read_only_words(module, of, *pointer);
+        }
         FunctionError::InvalidStoreTexture { .. } => {
             "only storage textures can be written to".to_owned()
         }
@@ -51,14 +63,14 @@ pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> 
                 (inner_type_text(module, actual_ty), inner_type_text(module, expected_ty));
             return mismatch_words(format!("the texture stores {expected}, and this is {actual}"));
         }
-        FunctionError::InvalidStoreTypes { .. } => {
-            return mismatch_words("the value does not have the type of what it is assigned to");
+        FunctionError::InvalidStoreTypes { pointer, value } => {
+            return stored_words(module, of, *pointer, *value);
         }
         FunctionError::InvalidImageStore(error) | FunctionError::InvalidImageAtomic(error) => {
-            return expression::expression_words(module, error);
+            return expression::expression_words(module, of, error);
         }
         FunctionError::InvalidCall { function, error } => {
-            return call_words(module, *function, error);
+            return call_words(module, of, *function, error);
         }
         FunctionError::MissingCapability(capabilities) => return lacking_words(*capabilities),
         FunctionError::NonUniformControlFlow(..) => {
@@ -130,14 +142,18 @@ fn returned_words(
         &of.body,
         &|found| matches!(found, Statement::Return { value: returned } if *returned == value),
     );
-    let found = value.and_then(|value| value_type(module, of, value));
+    let bare = value.and_then(|value| value_type(module, of, value));
+    let found = bare.as_ref().map(|found| format!("`{found}`"));
+    let wrong = Wrong::Returned {
+        found: bare,
+        expected: expected.map(|expected| type_text(module, expected).replace('`', "")),
+    };
     let sentence = match (expected.map(|expected| type_text(module, expected)), found) {
         (Some(expected), Some(found)) => {
             mismatch_words(format!("the function returns {expected}, and this is {found}"))
         }
         (Some(expected), None) if value.is_none() => {
             mismatch_words(format!("the function returns {expected}, and can end without a value"))
-                .note("help: add a `return` at its end, or in each branch")
         }
         (Some(expected), None) => {
             mismatch_words(format!("the function returns {expected}, and this has another type"))
@@ -148,7 +164,50 @@ fn returned_words(
         }
         (None, None) => mismatch_words("the function returns nothing"),
     };
-    Sentence { statement, ..sentence }
+    Sentence { statement, ..sentence.about(wrong) }
+}
+
+/// What cannot be assigned to.
+fn read_only_words(module: &Module, of: &Function, pointer: Handle<Expression>) -> Sentence {
+    let mut base = pointer;
+    let variable = loop {
+        match of.expressions[base] {
+            Expression::Access { base: inner, index: _ }
+            | Expression::AccessIndex { base: inner, index: _ } => base = inner,
+            Expression::GlobalVariable(handle) => break &module.global_variables[handle],
+            _ => return Sentence::plain("this expression is not assignable"),
+        }
+    };
+    let name = variable.name.clone().unwrap_or_default();
+    let (what, is_uniform) = match variable.space {
+        naga::AddressSpace::Uniform => ("a uniform buffer, which a shader only reads", true),
+        naga::AddressSpace::Storage { .. } => {
+            ("a storage buffer that is declared to be read", false)
+        }
+        _ => return Sentence::plain(format!("`{name}` is not assignable")),
+    };
+    Sentence::plain(format!("`{name}` is {what}")).about(Wrong::ReadOnly { name, is_uniform })
+}
+
+/// A value of another type than what it is assigned to.
+fn stored_words(
+    module: &Module,
+    of: &Function,
+    pointer: Handle<Expression>,
+    value: Handle<Expression>,
+) -> Sentence {
+    let expected = value_type(module, of, pointer).and_then(|pointer| {
+        let inner = pointer.strip_prefix("ptr<")?.split_once(", ")?.1.strip_suffix('>')?.to_owned();
+        // A pointer to a storage buffer has an access mode too.
+        Some(inner.split_once(", read").map_or(inner.clone(), |(inner, _)| inner.to_owned()))
+    });
+    match (value_type(module, of, value), expected) {
+        (Some(found), Some(expected)) => mismatch_words(format!(
+            "what is assigned to is `{expected}`, and the value is `{found}`"
+        ))
+        .about(Wrong::Stored { found, expected }),
+        _ => mismatch_words("the value does not have the type of what it is assigned to"),
+    }
 }
 
 fn condition_words(module: &Module, of: &Function, condition: Handle<Expression>) -> Sentence {
@@ -158,27 +217,19 @@ fn condition_words(module: &Module, of: &Function, condition: Handle<Expression>
         _ => false,
     });
     let sentence = match value_type(module, of, condition) {
-        Some(found) => {
-            let advice = match found.trim_matches('`') {
-                "f32" | "f16" => Some("help: compare it: `x != 0.0`"),
-                "i32" | "u32" => Some("help: compare it: `x != 0`"),
-                vector if vector.ends_with("<bool>") => Some("help: `all(x)` or `any(x)`"),
-                _ => None,
-            };
-            let sentence = Sentence::plain(format!("the condition is {found}, and must be `bool`"));
-            advice.into_iter().fold(sentence, Sentence::note)
-        }
+        Some(found) => mismatch_words(format!("the condition is `{found}`, and must be `bool`"))
+            .about(Wrong::Condition { found }),
         None => Sentence::plain("the condition of `if` is not a `bool`"),
     };
     Sentence { statement, ..sentence }
 }
 
 /// The type of a value, as WGSL spells it.
-fn value_type(module: &Module, of: &Function, value: Handle<Expression>) -> Option<String> {
+pub fn value_type(module: &Module, of: &Function, value: Handle<Expression>) -> Option<String> {
     let mut typifier = Typifier::new();
     let context = ResolveContext::with_locals(module, &of.local_variables, &of.arguments);
     typifier.grow(value, &of.expressions, &context).ok()?;
-    Some(inner_type_text(module, typifier.get(value, &module.types)))
+    Some(bare_type(module, typifier.get(value, &module.types)))
 }
 
 /// Where the first statement is that satisfies `is_meant`, in the order of the text.
@@ -227,7 +278,12 @@ fn local_words(
     }
 }
 
-fn call_words(module: &Module, handle: Handle<Function>, error: &CallError) -> Sentence {
+fn call_words(
+    module: &Module,
+    of: &Function,
+    handle: Handle<Function>,
+    error: &CallError,
+) -> Sentence {
     let called = &module.functions[handle];
     let name = called.name.as_deref().unwrap_or("the function");
     let sentence = match error {
@@ -235,15 +291,12 @@ fn call_words(module: &Module, handle: Handle<Function>, error: &CallError) -> S
             codes::CALL_MISMATCH,
             format!("`{name}` takes {required} arguments, not {seen}"),
         ),
-        CallError::ArgumentType { index, required, .. } => Sentence::coded(
-            codes::CALL_MISMATCH,
-            format!(
-                "argument {} of `{name}` is {}, and this has another type",
-                index + 1,
-                type_text(module, *required)
-            ),
-        ),
-        CallError::Argument { source, .. } => return expression::expression_words(module, source),
+        CallError::ArgumentType { index, required, seen_expression } => {
+            argument_words(module, of, name, *index, *required, *seen_expression)
+        }
+        CallError::Argument { source, .. } => {
+            return expression::expression_words(module, of, source);
+        }
         CallError::ResultAlreadyInScope(_)
         | CallError::ResultAlreadyPopulated(_)
         | CallError::ExpressionMismatch(_) => Sentence::plain(
@@ -251,6 +304,31 @@ fn call_words(module: &Module, handle: Handle<Function>, error: &CallError) -> S
         ),
     };
     sentence.note(format!("declared: {}", signature_text(module, called)))
+}
+
+fn argument_words(
+    module: &Module,
+    of: &Function,
+    name: &str,
+    at: usize,
+    required: Handle<naga::Type>,
+    seen: Handle<Expression>,
+) -> Sentence {
+    let expected = type_text(module, required);
+    let found = value_type(module, of, seen);
+    let seen = found
+        .as_ref()
+        .map_or_else(|| "has another type".to_owned(), |found| format!("is `{found}`"));
+    let sentence = Sentence::coded(
+        codes::CALL_MISMATCH,
+        format!("argument {} of `{name}` is {expected}, and this {seen}", at + 1),
+    );
+    match found {
+        Some(found) => {
+            sentence.about(Wrong::Argument { at, found, expected: expected.replace('`', "") })
+        }
+        None => sentence,
+    }
 }
 
 /// A function as its callers see it.

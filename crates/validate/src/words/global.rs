@@ -1,7 +1,9 @@
 //! Variables of a module.
 
-use naga::valid::GlobalVariableError;
+use naga::valid::{Disalignment, GlobalVariableError};
 use naga::{AddressSpace, Expression, Handle, Module, TypeInner};
+
+use crate::advice::{Variable, Wrong};
 
 use super::{Sentence, foreign_words, inner_type_text, lacking_words, type_text};
 
@@ -9,6 +11,11 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
     let text = match error {
         GlobalVariableError::InvalidUsage(space) => {
             format!("`{name}` is used in a way that {} does not allow", space_name(*space))
+        }
+        GlobalVariableError::InvalidType(AddressSpace::Handle) => {
+            return Sentence::plain(format!("`{name}` does not say where it is"))
+                .note("textures and samplers are declared without an address space, and no others")
+                .about(Wrong::Variable(name.to_owned(), Variable::Spaceless));
         }
         GlobalVariableError::InvalidType(space) => {
             format!("`{name}` has a type that {} cannot hold", space_name(*space))
@@ -20,16 +27,21 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
         GlobalVariableError::UnsupportedCapability(capabilities) => {
             return lacking_words(*capabilities);
         }
-        GlobalVariableError::InvalidBinding => format!(
-            "`{name}` needs `@group` and `@binding`, or must not have them: resources have them, \
-             other variables do not"
-        ),
+        GlobalVariableError::InvalidBinding => return binding_words(module, name),
         GlobalVariableError::Alignment(_, handle, disalignment) => {
-            return Sentence::plain(format!(
+            let sentence = Sentence::plain(format!(
                 "the layout of {} does not fit a uniform buffer",
                 type_text(module, *handle)
-            ))
-            .note(disalignment.to_string().to_lowercase());
+            ));
+            return match disalignment {
+                Disalignment::ArrayStride { .. } => sentence
+                    .note(disalignment.to_string().to_lowercase())
+                    .about(Wrong::Variable(name.to_owned(), Variable::Strided)),
+                Disalignment::NonHostShareable => {
+                    sentence.about(Wrong::Variable(name.to_owned(), Variable::Boolean))
+                }
+                _ => sentence.note(disalignment.to_string().to_lowercase()),
+            };
         }
         GlobalVariableError::InitializerExprType => {
             format!("the initializer of `{name}` must be a constant expression")
@@ -37,7 +49,10 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
         GlobalVariableError::InitializerType => return initializer_words(module, name),
         GlobalVariableError::InitializerNotAllowed(space) => {
             let space = space_words(*space);
-            format!("variables in {space} cannot have an initializer, and `{name}` has one")
+            return Sentence::plain(format!(
+                "variables in {space} cannot have an initializer, and `{name}` has one"
+            ))
+            .about(Wrong::Variable(name.to_owned(), Variable::Initialised));
         }
         GlobalVariableError::StorageAddressSpaceWriteOnlyNotSupported => {
             format!("`{name}` must be readable: storage buffers are `read` or `read_write`")
@@ -51,6 +66,20 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
         }
     };
     Sentence::plain(text)
+}
+
+/// A variable without a binding that needs one, or with one.
+fn binding_words(module: &Module, name: &str) -> Sentence {
+    let found =
+        module.global_variables.iter().find(|(_, found)| found.name.as_deref() == Some(name));
+    match found {
+        Some((_, variable)) if variable.binding.is_some() => Sentence::plain(format!(
+            "`{name}` has `@group` and `@binding`, which only buffers, textures and samplers have"
+        ))
+        .note("help: leave them out"),
+        _ => Sentence::plain(format!("`{name}` needs `@group` and `@binding`"))
+            .about(Wrong::Variable(name.to_owned(), Variable::Unbound)),
+    }
 }
 
 /// The error for an initializer of another type, with both types.

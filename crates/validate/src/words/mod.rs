@@ -18,6 +18,7 @@ use naga::common::wgsl::TypeContext;
 use naga::valid::{Capabilities, ValidationError};
 use naga::{Handle, Module, Type, TypeInner};
 
+use super::advice::Wrong;
 use lamplight_diagnostic::{Code, codes};
 
 /// A sentence, with the code for kinds that have one of their own.
@@ -31,6 +32,8 @@ pub struct Sentence {
     /// The statement that is wrong, where naga names only a value in it, which may be declared
     /// elsewhere.
     pub statement: Option<naga::Span>,
+    /// The types that are wrong, from which the help is made.
+    pub wrong: Option<Wrong>,
 }
 
 impl Sentence {
@@ -41,11 +44,17 @@ impl Sentence {
             notes: Vec::new(),
             beside: None,
             statement: None,
+            wrong: None,
         }
     }
 
     fn coded(code: &'static Code, message: impl Into<String>) -> Self {
         Self { code: Some(code), ..Self::plain(message) }
+    }
+
+    fn about(mut self, wrong: Wrong) -> Self {
+        self.wrong = Some(wrong);
+        self
     }
 
     fn note(mut self, note: impl Into<String>) -> Self {
@@ -94,6 +103,11 @@ fn type_text(module: &Module, handle: Handle<Type>) -> String {
         Ok(()) if !text.is_empty() => format!("`{text}`"),
         _ => "a type without a name".to_owned(),
     }
+}
+
+/// A type as WGSL spells it, without backticks.
+fn bare_type(module: &Module, inner: &TypeInner) -> String {
+    inner_type_text(module, inner).replace('`', "")
 }
 
 fn inner_type_text(module: &Module, inner: &TypeInner) -> String {

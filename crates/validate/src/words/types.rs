@@ -7,6 +7,7 @@ use naga::valid::{
 };
 
 use super::{NOT_EVERY, Sentence, entry, foreign_words, lacking_words, type_text};
+use crate::advice::Wrong;
 use lamplight_diagnostic::codes;
 
 pub fn type_of(module: &Module, name: &str, error: &TypeError) -> Sentence {
@@ -25,6 +26,7 @@ pub fn type_of(module: &Module, name: &str, error: &TypeError) -> Sentence {
         )),
         TypeError::InvalidData(base) => {
             Sentence::plain(format!("{} cannot be a member here", type_text(module, *base)))
+                .about(Wrong::Held(name.to_owned()))
         }
         TypeError::InvalidArrayBaseType(base) => {
             Sentence::plain(format!("there are no arrays of {}", type_text(module, *base)))
@@ -95,7 +97,8 @@ pub fn compose_words(module: &Module, error: &ComposeError) -> Sentence {
         ComposeError::ComponentCount { given, expected } => Sentence::coded(
             codes::CALL_MISMATCH,
             format!("a constructor takes {expected} components, not {given}"),
-        ),
+        )
+        .about(Wrong::Components { given: *given, expected: *expected }),
         ComposeError::ComponentType { index } => Sentence::coded(
             codes::CALL_MISMATCH,
             format!("argument {} of a constructor has another type than it takes", index + 1),

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use crate::resolve::{Packages, ROOT};
 use lamplight_diagnostic::source::{self, Embedded, LIMITS, SourceId, SourceSet, Span};
-use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_diagnostic::{Diagnostic, Diagnostics, codes, nearest_name};
 use lamplight_syntax::glsl::{Module, Symbols, parse};
 
 /// The files reachable from a root file, tokenised, and where each `#include` leads.
@@ -254,7 +254,35 @@ impl<'a> Loader<'a> {
                 .map(|file| include::include_spelling(&includer, searched, file, angled));
             spellings.extend(spelled);
         }
-        error.suggest(path, spellings.iter().map(String::as_str))
+        let noted = error.suggest(path, spellings.iter().map(String::as_str));
+        match angled || !noted.notes.is_empty() {
+            true => noted,
+            false => self.angled(&includer, path, noted),
+        }
+    }
+
+    /// Adds the file of another package that is meant by a path in quotes, which are for files of the
+    /// own package.
+    fn angled(&mut self, includer: &PackagePath, path: &str, error: Diagnostic) -> Diagnostic {
+        let mut spellings = Vec::new();
+        let packages = self.packages;
+        for searched in include::searched_packages(packages, includer.0, true) {
+            let files = self
+                .listings
+                .entry(searched.0)
+                .or_insert_with(|| packages.package(searched.0).files.list(include::EXTENSIONS));
+            let spelled =
+                files.iter().map(|file| include::include_spelling(includer, searched, file, true));
+            spellings.extend(spelled);
+        }
+        let known = spellings.iter().map(String::as_str);
+        let same = known.clone().find(|known| *known == path);
+        match same.or_else(|| nearest_name(path, known)) {
+            Some(near) => error.note(format!(
+                "help: files of other packages stand between `<` and `>`: write `#include <{near}>`"
+            )),
+            None => error,
+        }
     }
 
     /// The module at a place, which is read when first asked for.
