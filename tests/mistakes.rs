@@ -14,7 +14,7 @@
 //! *teaches* if every token that the corrected lines add is in it, outside of the excerpt: then the
 //! line can be written from the source and the message. Words and numbers of the lines that are
 //! replaced need not be repeated. Where nothing is added, what is removed must be in it, or that
-//! something is to be left out.
+//! something is to be left out; where lines only move, it says where.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -69,6 +69,7 @@ pub fn tests() -> Vec<Trial> {
     };
     let mut tests: Vec<Trial> = tables().into_iter().map(table).collect();
     tests.push(Trial::test("mistakes are taught", taught));
+    tests.push(Trial::test("mistakes without false alarms", no_alarms));
     tests
 }
 
@@ -140,7 +141,8 @@ fn told(mistake: &Mistake, file: &str, message: &Message) -> Result<(), String> 
     if !message.failed && !message.text.contains("warning[") {
         return Err("it is accepted".to_owned());
     }
-    if !message.text.contains("help: ") && !message.text.contains("declared: ") {
+    let helps = ["help: ", "declared: ", "did you mean"];
+    if !helps.iter().any(|help| message.text.contains(help)) {
         return Err("the message has no help".to_owned());
     }
     // Line 0 stands for a command line, which has no place in a file.
@@ -243,28 +245,33 @@ fn untaught<'m>(mistake: &'m Mistake, message: &str) -> BTreeSet<&'m str> {
     };
     let known: BTreeSet<&str> =
         mistake.fixed.keys().flat_map(|number| tokens(replaced(number))).collect();
-    let (mut added, mut removed) = (BTreeSet::new(), BTreeSet::new());
-    for (number, line) in &mistake.fixed {
-        let (old, new) = (tokens(replaced(number)), tokens(line));
-        let count =
-            |tokens: &[&str], token: &str| tokens.iter().filter(|one| **one == token).count();
-        let is_word =
-            |token: &str| token.starts_with(|one: char| one.is_alphanumeric() || one == '_');
-        added.extend(new.iter().filter(|token| {
-            count(&new, token) > count(&old, token) && !(is_word(token) && known.contains(*token))
-        }));
-        removed.extend(old.iter().filter(|token| count(&old, token) > count(&new, token)));
-    }
+    let old: Vec<&str> = mistake.fixed.keys().flat_map(|number| tokens(replaced(number))).collect();
+    let new: Vec<&str> = mistake.fixed.values().flat_map(|line| tokens(line)).collect();
+    let (mut added, removed) = (beyond(&new, &old), beyond(&old, &new));
+    let is_word = |token: &str| token.starts_with(|one: char| one.is_alphanumeric() || one == '_');
+    added.retain(|token| !(is_word(token) && known.contains(token)));
     if let Some(run) = &mistake.fixed_run {
         let old = mistake.run.as_deref().unwrap_or_default();
         added.extend(tokens(run).into_iter().filter(|token| !tokens(old).contains(token)));
     }
-    added.retain(|token: &&str| !mistake.given.contains(*token));
-    match added.is_empty() && !removed.is_empty() {
-        true if message.contains("leave") => BTreeSet::new(),
-        true => removed.into_iter().filter(|token: &&str| !told.contains(token)).collect(),
-        false => added.into_iter().filter(|token| !told.contains(token)).collect(),
-    }
+    let moves = added.is_empty() && removed.is_empty();
+    let leaves_out = added.is_empty() && !moves;
+    added.retain(|token| !mistake.given.contains(*token));
+    const WHERE: [&str; 5] = ["above", "before", "behind", "order", "write"];
+    let needed = match (moves, leaves_out) {
+        (true, _) if WHERE.iter().any(|word| told.contains(word)) => BTreeSet::new(),
+        (true, _) => BTreeSet::from(["where"]),
+        (false, true) if message.contains("leave") => BTreeSet::new(),
+        (false, true) => removed,
+        (false, false) => added,
+    };
+    needed.into_iter().filter(|token| !told.contains(token)).collect()
+}
+
+/// The tokens that one text has more often than another.
+fn beyond<'t>(text: &[&'t str], other: &[&str]) -> BTreeSet<&'t str> {
+    let count = |tokens: &[&str], token: &str| tokens.iter().filter(|one| **one == token).count();
+    text.iter().filter(|token| count(text, token) > count(other, token)).copied().collect()
 }
 
 /// Whether a line of a message is one of the author's, which has a number in front.
@@ -295,4 +302,22 @@ fn taught() -> Result<(), Failed> {
         return Ok(());
     }
     Err(format!("{taught} of {all} mistakes are taught").into())
+}
+
+/// The library and the examples contradict none of the library's documentation.
+fn no_alarms() -> Result<(), Failed> {
+    for folder in ["shaderlib", "examples/wesl_crate"] {
+        let output =
+            run_line(LAMPLIGHT, &snapshot::root().join(folder), "lint . --diagnostics short")?;
+        let text = stderr_text(&output);
+        let is_alarm = |line: &&str| line.contains("[argument-");
+        if let Some(alarm) = text.lines().find(is_alarm) {
+            return Err(format!("{folder}: {alarm}").into());
+        }
+        let output = String::from_utf8_lossy(&output.stdout).into_owned();
+        if !output.contains(" 0 errors") {
+            return Err(format!("{folder} was not checked: {text}{output}").into());
+        }
+    }
+    Ok(())
 }

@@ -2,6 +2,7 @@
 //! with everything that it declares, and validated by naga.
 
 mod case;
+mod documented;
 mod flags;
 mod settings;
 mod stages;
@@ -191,6 +192,7 @@ pub fn lint_text(graph: &Graph, composed: &Composed) -> Diagnostics {
     }
     match validate::validate_every(composed) {
         Ok(validated) => {
+            warnings.extend(graph.own(documented::contradictions(composed)));
             let more = graph.own(validate::lint(composed, &validated, false));
             let lacking = validate::lacking(composed, &validated, validate::CAPABILITIES);
             // A target that is asked for and lacks it is an error of `compile`.

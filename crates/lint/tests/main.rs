@@ -8,9 +8,10 @@
     clippy::print_stderr
 )]
 
+mod documented;
 mod large;
 mod stages;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[large::tests, stages::tests])
+    lamplight_testing::run_tests(&[documented::tests, large::tests, stages::tests])
 }

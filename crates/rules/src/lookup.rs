@@ -81,6 +81,23 @@ impl<'t> Lookup<'t> {
         Some((self.tree.place(found), self.piece_of(found)))
     }
 
+    /// Every call within a function, with its place, its name and its arguments.
+    pub fn calls(&self) -> Vec<(Place, &'t str, Vec<Place>)> {
+        let calls = self.tree.expressions.iter().filter_map(|one| match &one.kind {
+            ExprKind::Call { callee, template: _, arguments } => {
+                let arguments = arguments.iter().map(|id| self.tree.place(*id)).collect();
+                Some((one.place, *callee, arguments))
+            }
+            _ => None,
+        });
+        calls.filter(|(place, ..)| self.tree.enclosing(*place).is_some()).collect()
+    }
+
+    /// The heads of all functions.
+    pub fn heads(&self) -> Vec<Head<'t>> {
+        self.tree.functions.iter().map(|function| self.head_of(function)).collect()
+    }
+
     /// The innermost call around a place, with its own place, and which of its arguments that is.
     pub fn call_around(&self, range: &Range<usize>) -> Option<(Place, &'t str, usize)> {
         self.tree.expressions.iter().find_map(|one| {

@@ -34,11 +34,25 @@ pub fn wanted_targets(chosen: &[TargetChoice]) -> Vec<Target> {
     targets
 }
 
+/// The target that other tools have another name for.
+fn alias_of(name: &str) -> Option<&'static str> {
+    match name {
+        "spv" | "spir-v" | "vulkan" => Some("spirv"),
+        "metal" => Some("msl"),
+        "dx12" | "d3d12" => Some("hlsl"),
+        "glsl" | "opengl" | "gl" => Some("glsl450"),
+        "essl" | "webgl" | "webgl2" | "gles" => Some("essl300"),
+        "webgpu" => Some("wgsl"),
+        _ => None,
+    }
+}
+
 /// A target by name, as an option's value.
 pub fn parse_target(name: &str) -> Result<Target, String> {
     Target::find(name).ok_or_else(|| {
         let names: Vec<&str> = Target::ALL.iter().map(|target| target.name()).collect();
-        let hint = nearest_name(name, names.iter().copied())
+        let hint = alias_of(name)
+            .or_else(|| nearest_name(name, names.iter().copied()))
             .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         format!("no such target{hint} (targets: {})", names.join(", "))
     })

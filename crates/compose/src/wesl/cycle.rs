@@ -83,5 +83,11 @@ fn report_cycle(graph: &Graph, edges: &[Dependency], circle: &[(Thing, usize)]) 
         let edge = &edges[next - 1];
         error = error.at(edge.span, format!("`{}` uses `{}`", text(*thing), text(edge.used)));
     }
-    error
+    error.note(match circle.len() {
+        1 => {
+            "help: a structure cannot hold itself, and a constant is not made of itself: an index \
+             (`u32`) into an array stands for another element"
+        }
+        _ => "help: break the circle: write one of the values out",
+    })
 }

@@ -35,7 +35,7 @@ fn native_type(name: &str) -> &str {
 /// Adds advice to the error that something was expected at a token.
 pub fn advised(tokens: Tokens<'_>, at: usize, what: &str, error: Diagnostic) -> Diagnostic {
     match what {
-        "`;`" => missing_semicolon(tokens, at, error),
+        "`;`" | "`;` after the import" => missing_semicolon(tokens, at, error),
         "a declaration" => declaration(tokens, at, error),
         "`:` and a type" => typed_name(tokens, at, error),
         "`{`" => braces(tokens, at, error),
@@ -228,4 +228,22 @@ pub fn directive(text: &str, at: usize) -> String {
         (Some("include" | "import"), _) => "help: write `import package::module::name;`".to_owned(),
         _ => "help: use `import` and `@if(...)`".to_owned(),
     }
+}
+
+/// What to write for an `import` of a file's name.
+pub fn quoted_import(text: &str, at: usize) -> Option<String> {
+    let line = text[..at].rfind('\n').map_or(0, |found| found + 1);
+    if !text[line..at].trim_start().starts_with("import") {
+        return None;
+    }
+    let path = text[at + 1..].split(['"', '\'']).next()?;
+    let path = path.trim_start_matches("./").rsplit_once('.').map_or(path, |(path, _)| path);
+    let module = path.trim_start_matches("./").replace('/', "::");
+    Some(format!("help: write `import package::{module}::NAME;` with the name of an item"))
+}
+
+/// Whether a bracket opens the arguments of an attribute, as in `@if(`.
+pub fn opens_condition(text: &str, at: usize) -> bool {
+    let before = text[..at].trim_end();
+    before.trim_end_matches(|one: char| one.is_alphanumeric() || one == '_').ends_with('@')
 }

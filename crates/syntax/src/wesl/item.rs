@@ -220,7 +220,8 @@ impl ItemSplitter<'_, '_> {
             self.module.warnings.push(body::import_inside(self.tokens, keyword));
         }
         if self.declared {
-            let error = Diagnostic::error(codes::SYNTAX_ERROR, "an `import` after a declaration");
+            let error = Diagnostic::error(codes::SYNTAX_ERROR, "an `import` after a declaration")
+                .note("help: write it above the first declaration");
             self.module
                 .errors
                 .push(error.at(self.tokens.span(keyword), "imports come first in a file"));
@@ -520,6 +521,9 @@ impl ImportReader<'_, '_> {
                 return Err(misplaced_as(self.tokens, self.at));
             }
             let name = self.tokens.identifier(self.at, "a name")?;
+            if self.tokens.text(self.at) == "self" && self.at == own && start.is_none() {
+                return Err(self.own_module(&path));
+            }
             let place = self.tokens.range(self.at, self.at + 1);
             if path.segments.is_empty() {
                 path.parts.first = place.clone();
@@ -551,6 +555,19 @@ impl ImportReader<'_, '_> {
         let (condition, is_public) = (self.statement.condition, self.statement.is_public);
         self.module.imports.push(Import { condition, path, alias, alias_range, is_public });
         Ok(())
+    }
+
+    /// The error about `self` in a collection, which WESL does not have.
+    fn own_module(&self, path: &Path) -> Diagnostic {
+        let names = path.segments.iter().map(|name| self.tokens.names.text(*name));
+        let start = match path.origin {
+            Origin::Package => "package::",
+            _ => "",
+        };
+        let module = format!("{start}{}", names.collect::<Vec<_>>().join("::"));
+        Diagnostic::error(codes::SYNTAX_ERROR, "WESL has no `self` in imports")
+            .at(self.tokens.span(self.at), "the module itself is an import of its own")
+            .note(format!("help: write `import {module};`"))
     }
 
     /// The `*` at the end of a path, whose first token in this piece is `own`.

@@ -164,6 +164,9 @@ fn close_bracket(
         .at(scanner.span(start), format!("`{}` was expected here", expected as char))
         .at(span_of(&tokens[opener as usize], scanner.source), "to close this");
         let before = span_of(&tokens[index - 1], scanner.source);
+        if advice::opens_condition(scanner.text, tokens[opener as usize].start as usize) {
+            return Err(error.note("help: write `)` behind the condition"));
+        }
         return Err(advice::missing_closer(scanner.text, before, expected as char, error));
     }
     tokens[index].partner = opener;
@@ -328,7 +331,13 @@ impl TokenScanner<'_> {
             '?' => found
                 .at(span, "WGSL has no `?:`")
                 .note("help: `select(otherwise, value, condition)`"),
-            _ => found.at(span, "not a character of WGSL"),
+            '"' | '\'' => match advice::quoted_import(self.text, self.at) {
+                Some(help) => found.at(span, "paths stand without quotes").note(help),
+                None => found.at(span, "WGSL has no strings").note("help: leave it out"),
+            },
+            _ => found
+                .at(span, "not a character of WGSL")
+                .note("help: leave it out: names have letters, digits and `_`"),
         }
     }
 

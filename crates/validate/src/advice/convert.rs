@@ -63,7 +63,12 @@ pub fn short_type(name: &str) -> String {
 
 /// A text with all its types as authors usually write them, but for those that `author` has.
 pub fn with_short_types(text: &str, author: &str) -> String {
-    let mut short = text.to_owned();
+    // Numbers that have no type yet.
+    let mut short = text
+        .replace("`AbstractFloat`", "a float")
+        .replace("`AbstractInt`", "an integer")
+        .replace("<AbstractFloat>", "<f32>")
+        .replace("<AbstractInt>", "<i32>");
     for base in ["vec2", "vec3", "vec4"].into_iter().map(str::to_owned).chain(matrices()) {
         for scalar in ["f32", "f16", "i32", "u32"] {
             let long = format!("{base}<{scalar}>");
@@ -159,6 +164,7 @@ fn as_scalar(value: &str, from: Kind, to: Kind, name: &str) -> String {
         (Kind::Signed, true, _) => digits.to_owned(),
         (Kind::Signed | Kind::Unsigned, _, Some(whole)) => whole.to_owned(),
         (Kind::Float, _, _) if from == Kind::AbstractFloat => value.to_owned(),
+        _ if from == to => value.to_owned(),
         _ => format!("{name}({value})"),
     }
 }
@@ -217,6 +223,8 @@ mod tests {
             ("f(a + b)", "vec4<f32>", "f32", Some("f(a + b).x")),
             ("0.0", "AbstractFloat", "vec3<f32>", Some("vec3f(0.0)")),
             ("1", "AbstractInt", "vec3<f32>", Some("vec3f(1.0)")),
+            ("1.0", "f32", "vec3<f32>", Some("vec3f(1.0)")),
+            ("x", "f32", "vec3<f32>", Some("vec3f(x)")),
             ("a == b", "vec2<bool>", "bool", Some("all(a == b)")),
             ("x", "f32", "bool", Some("x != 0.0")),
             ("n & 1u", "u32", "bool", Some("(n & 1u) != 0u")),
@@ -234,6 +242,10 @@ mod tests {
         assert_eq!(with_short_types(text, ""), "`vec3f` and `mat4x4f`");
         assert_eq!(with_short_types(text, "a: vec3<f32>"), "`vec3<f32>` and `mat4x4f`");
         assert_eq!(with_short_types("`texture_2d<f32>`", ""), "`texture_2d<f32>`");
+        assert_eq!(
+            with_short_types("`vec2<AbstractInt>`, `AbstractInt`", ""),
+            "`vec2i`, an integer"
+        );
     }
 
     #[test]

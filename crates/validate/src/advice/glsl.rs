@@ -149,6 +149,9 @@ fn operands(value: &str, operator: &str, left: &str, right: &str, mistake: &mut 
         return;
     }
     let (Some(first), Some(second)) = (shader_type(left), shader_type(right)) else { return };
+    if operator != "*" && (first.starts_with("mat") || second.starts_with("mat")) {
+        return;
+    }
     let wanted = if first.starts_with("mat") && second.starts_with("vec") {
         factor_of_matrix(first, true).map(|wanted| (false, wanted))
     } else if first.starts_with("vec") && second.starts_with("mat") {

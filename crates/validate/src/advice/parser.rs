@@ -119,6 +119,9 @@ fn conversion(source: &Source<'_>, found: &str, mistake: &mut Mistake) {
     let [_, (at, _), ..] = mistake.labels.as_slice() else { return };
     let at = at.clone();
     let Some(lookup) = &source.lookup else { return };
+    if fits_no_count(lookup, &at, mistake) {
+        return;
+    }
     let plain = match lookup.piece(&at) {
         Some(Piece::Binary { operator, left, right }) => {
             let sides = [left, right].map(|side| converted_name(source, side, found, &wanted));
@@ -135,6 +138,23 @@ fn conversion(source: &Source<'_>, found: &str, mistake: &mut Mistake) {
     if let Some(plain) = plain.filter(|plain| plain != source.slice(&at)) {
         mistake.write(plain);
     }
+}
+
+/// Whether an argument has the type of another parameter since there are too few or too many: then that
+/// is what is wrong.
+fn fits_no_count(lookup: &Lookup<'_>, at: &Range<usize>, mistake: &mut Mistake) -> bool {
+    let Some((call, name, _)) = lookup.call_around(at) else { return false };
+    let (Some(head), Some(Piece::Call { arguments, .. })) =
+        (lookup.head_named(name), lookup.piece(&call.range()))
+    else {
+        return false;
+    };
+    let (wanted, found) = (head.parameters.len(), arguments.len());
+    if wanted != found {
+        mistake.message = format!("`{name}` takes {}, not {found}", counted_words(wanted));
+        mistake.labels = vec![(call.range(), "in this call".to_owned())];
+    }
+    wanted != found
 }
 
 /// A side of an operator, converted unless it is a number, which goes with every type.
@@ -511,7 +531,7 @@ fn assigned(source: &Source<'_>, _: &str, mistake: &mut Mistake) {
         "parameter" => {
             let rest = match &step {
                 Some((_, Step::Assign { operator, value, .. })) => {
-                    format!(" `changed {operator} {};`", source.part(*value))
+                    format!(", then `changed {operator} {};`", source.part(*value))
                 }
                 _ => String::new(),
             };

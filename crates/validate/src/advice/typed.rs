@@ -66,15 +66,14 @@ pub fn advise_typed(text: &str, wrong: &Wrong, mistake: &mut Mistake) {
         }
         Wrong::Condition { found } => {
             let Some((_, Step::Condition(value))) = lookup.step(&place) else { return };
-            mistake.place(value.range(), format!("this is `{found}`"));
+            mistake.labels = vec![(value.range(), format!("this is `{found}`"))];
             give(converted(source.part(value), found, "bool"), mistake);
         }
         Wrong::Stored { found, expected } => stored(&source, lookup, found, expected, mistake),
         Wrong::Argument { at, found, expected } => {
-            let Some((call, piece)) = lookup.call(place.start) else { return };
-            let Piece::Call { arguments, .. } = piece else { return };
-            let Some(argument) = arguments.get(*at) else { return };
-            mistake.place(argument.range(), format!("this is `{found}`"));
+            let Some((call, _, arguments)) = called(lookup, mistake, *at) else { return };
+            let argument = &arguments[*at];
+            mistake.labels = vec![(argument.range(), format!("this is `{}`", short_type(found)))];
             let order = in_another_order(&source, &arguments, *at, found, expected);
             let value = converted(source.part(*argument), found, expected);
             match order {
@@ -94,11 +93,9 @@ pub fn advise_typed(text: &str, wrong: &Wrong, mistake: &mut Mistake) {
             choices(&source, lookup, &place, reject, accept, mistake);
         }
         Wrong::Coordinates { at, found, expected } => {
-            let Some((call, Piece::Call { arguments, .. })) = lookup.call(place.start) else {
-                return;
-            };
-            let Some(argument) = arguments.get(*at) else { return };
-            mistake.place(argument.range(), format!("this is `{}`", short_type(found)));
+            let Some((call, _, arguments)) = called(lookup, mistake, *at) else { return };
+            let argument = &arguments[*at];
+            mistake.labels = vec![(argument.range(), format!("this is `{}`", short_type(found)))];
             let value = converted(source.part(*argument), found, expected);
             give(value.map(|value| source.replaced(call, *argument, &value)), mistake);
         }
@@ -135,6 +132,20 @@ pub fn advise_typed(text: &str, wrong: &Wrong, mistake: &mut Mistake) {
         }
         Wrong::Port(..) | Wrong::Variable(..) | Wrong::Held(_) => {}
     }
+}
+
+/// The call that an error is about, with its name and its arguments, of which there are more than some.
+fn called<'t>(
+    lookup: &Lookup<'t>,
+    mistake: &Mistake,
+    least: usize,
+) -> Option<(Place, &'t str, Vec<Place>)> {
+    mistake.labels.iter().find_map(|(range, _)| match lookup.call(range.start)? {
+        (place, Piece::Call { name, arguments }) if arguments.len() > least => {
+            Some((place, name, arguments))
+        }
+        _ => None,
+    })
 }
 
 /// Says what to write, where that is known.
@@ -192,6 +203,9 @@ fn operands(
             "`{inner}` binds tighter than `{operator}`: write `({left_text} {operator} {first}) \
              {inner} {last}`"
         ));
+        return;
+    }
+    if operator != "*" && (left_type.starts_with("mat") || right_type.starts_with("mat")) {
         return;
     }
     let wanted = if left_type.starts_with("mat") && right_type.starts_with("vec") {
@@ -289,7 +303,7 @@ fn returned(
     match (value, found, expected) {
         (Some(value), Some(found), Some(expected)) => {
             let text = source.part(value);
-            mistake.place(value.range(), format!("this is `{}`", short_type(found)));
+            mistake.labels = vec![(value.range(), format!("this is `{}`", short_type(found)))];
             if let Some(result) = head.result {
                 let label = format!("`{}` returns this", head.name);
                 mistake.labels.push((result.range(), label));

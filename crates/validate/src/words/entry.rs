@@ -99,16 +99,36 @@ fn at_port(
         }
         _ => return sentence,
     };
-    // Which member an error is about is only known for those without a place.
-    let is_structure = parameter.is_some_and(|at| {
-        point.function.arguments.get(at).is_some_and(|argument| {
-            matches!(module.types[argument.ty].inner, naga::TypeInner::Struct { .. })
-        })
+    let held = match parameter {
+        Some(at) => point.function.arguments.get(at).map(|argument| argument.ty),
+        None => point.function.result.as_ref().map(|result| result.ty),
+    };
+    let members = held.and_then(|held| match &module.types[held].inner {
+        naga::TypeInner::Struct { members, span: _ } => Some(members),
+        _ => None,
     });
-    if is_structure && member.is_none() {
+    let member = member.or_else(|| match interface {
+        Interface::Interpolated => members?.iter().position(|one| is_smooth_integer(module, one)),
+        _ => None,
+    });
+    // Which member another error is about is not known.
+    if members.is_some() && member.is_none() {
         return sentence;
     }
     sentence.about(Wrong::Port(Port { entry: point.name.clone(), parameter, member }, interface))
+}
+
+/// Whether a member is an integer between stages that is not `flat`.
+fn is_smooth_integer(module: &Module, member: &naga::StructMember) -> bool {
+    let is_integer = module.types[member.ty]
+        .inner
+        .scalar_kind()
+        .is_some_and(|kind| matches!(kind, naga::ScalarKind::Sint | naga::ScalarKind::Uint));
+    let is_flat = matches!(
+        member.binding,
+        Some(naga::Binding::Location { interpolation: Some(naga::Interpolation::Flat), .. })
+    );
+    is_integer && !is_flat && matches!(member.binding, Some(naga::Binding::Location { .. }))
 }
 
 /// The message for an operation that the stage of an entry point does not have.
