@@ -27,6 +27,13 @@ const TYPES: [(&str, &str); 17] = [
     ("uvec2", "vec2u"),
 ];
 
+/// Whether a word is a type of WGSL or of another language.
+fn is_type(name: &str) -> bool {
+    let known = TYPES.iter().any(|(foreign, native)| *foreign == name || *native == name);
+    known
+        || ["vec", "mat", "array", "texture", "sampler"].iter().any(|start| name.starts_with(start))
+}
+
 /// A type of another language as WGSL calls it, or the same.
 fn native_type(name: &str) -> &str {
     TYPES.iter().find(|(foreign, _)| *foreign == name).map_or(name, |(_, native)| native)
@@ -39,11 +46,19 @@ pub fn advised(tokens: Tokens<'_>, at: usize, what: &str, error: Diagnostic) -> 
         "a declaration" => declaration(tokens, at, error),
         "`:` and a type" => typed_name(tokens, at, error),
         "`{`" => braces(tokens, at, error),
-        "a name" if tokens.word(at).is_some() => {
+        "a name" if tokens.word(at).is_some() && declares_name(tokens, at) => {
             error.note(format!("help: take another name, such as `{}_`", tokens.text(at)))
         }
         _ => error,
     }
+}
+
+/// Whether a name at a token would be one that is declared there.
+fn declares_name(tokens: Tokens<'_>, at: usize) -> bool {
+    let before = at.checked_sub(1).map_or("", |before| tokens.text(before));
+    let is_import = line_until(tokens, at).starts_with("import");
+    let declaring = ["(", ",", "fn", "let", "var", "const", "struct", "alias", "override", ">"];
+    declaring.contains(&before) && !is_import
 }
 
 /// The text of a line, up to the end of a token and without comments.
@@ -55,6 +70,11 @@ fn line_until(tokens: Tokens<'_>, at: usize) -> &str {
 
 fn missing_semicolon(tokens: Tokens<'_>, at: usize, error: Diagnostic) -> Diagnostic {
     let Some(last) = at.checked_sub(1) else { return error };
+    let between = &tokens.text[tokens.span(last).end as usize..tokens.start(at) as usize];
+    // On one line, something else is wrong.
+    if !between.contains('\n') && !tokens.is(at, b'}') && at < tokens.len() {
+        return error;
+    }
     let mut error = error;
     error.message = "`;` is missing".to_owned();
     error.labels.clear();
@@ -138,6 +158,10 @@ fn typed_name(tokens: Tokens<'_>, at: usize, error: Diagnostic) -> Diagnostic {
              the variable in calls"
         )),
         "in" | "const" => error.note(format!("help: write `{named}: {pointed}`")),
+        // The colon is missing.
+        _ if is_type(name) && !is_type(of_type) => {
+            error.note(format!("help: write `{of_type}: {}`", native_type(name)))
+        }
         _ => error.note(format!(
             "help: names come before their types: write `{name}: {}`",
             native_type(of_type)
@@ -163,6 +187,12 @@ pub fn missing_closer(text: &str, before: Span, mark: char, error: Diagnostic) -
     let rest = text[end..].lines().next().unwrap_or_default().trim_end();
     let last = text.get(start..end).unwrap_or_default();
     let mut error = error;
+    let found =
+        text[end..].trim_start().chars().next().filter(|one| matches!(one, ')' | ']' | '}'));
+    let is_beside = !text[end..].trim_start_matches([' ', '\t']).starts_with(['\n', '\r']);
+    if let Some(found) = found.filter(|_| is_beside) {
+        return error.note(format!("help: write `{mark}` instead of `{found}`, or before it"));
+    }
     error.labels.insert(
         0,
         lamplight_diagnostic::Label {
