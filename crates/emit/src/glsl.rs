@@ -78,7 +78,7 @@ fn write_padded(
         bounds_policies(source, version),
     )
     .and_then(|mut writer| writer.write());
-    let mut info = written.map_err(|error| in_words(&text, &error))?;
+    let mut info = written.map_err(|error| in_words(source, &text, &error))?;
     let mut text = with_mask_elements(with_known_extensions(text.0, source.module));
     if defined.is_some() {
         text = remainder::with_plain_parameters(text);
@@ -215,11 +215,39 @@ fn writer_options(
 }
 
 /// What naga's writer says, in words.
-fn in_words(text: &BoundedText, error: &naga::back::glsl::Error) -> String {
+fn in_words(
+    source: &EmitSource<'_>,
+    text: &BoundedText,
+    error: &naga::back::glsl::Error,
+) -> String {
     match error {
+        naga::back::glsl::Error::ImageMultipleSamplers => several_samplers(source),
         naga::back::glsl::Error::MissingFeatures(features) => missing_words(*features),
         error => text.explain(error),
     }
+}
+
+/// The texture that an entry point samples with several samplers, with their names.
+fn several_samplers(source: &EmitSource<'_>) -> String {
+    let name = |handle: naga::Handle<naga::GlobalVariable>| {
+        let name = source.module.global_variables[handle].name.as_deref();
+        format!("`{}`", name.unwrap_or_default())
+    };
+    let used = &source.info.get_entry_point(source.index).sampling_set;
+    let mut pairs: Vec<_> = used.iter().map(|key| (key.image, key.sampler)).collect();
+    pairs.sort();
+    let twice = pairs.windows(2).find(|pair| pair[0].0 == pair[1].0);
+    let what = twice.map_or_else(
+        || "a texture is sampled with several samplers".to_owned(),
+        |pair| {
+            let (image, one, other) = (name(pair[0].0), name(pair[0].1), name(pair[1].1));
+            format!("{image} is sampled with {one} and with {other}")
+        },
+    );
+    format!(
+        "{what}, and this language joins each texture with one sampler\nhelp: take one sampler for \
+         both, or bind the texture twice"
+    )
 }
 
 /// What a version of the language lacks, in words.

@@ -240,7 +240,11 @@ fn written_plainly(
     conventions: Conventions,
 ) -> Result<Emitted, Diagnostic> {
     let failed = |reason: String| {
-        Diagnostic::error(codes::EMIT_FAILED, format!("target `{}`: {reason}", writer.target))
+        // What to do about it stands on a line of its own.
+        let (reason, help) = reason.split_once('\n').unwrap_or((&reason, ""));
+        let error =
+            Diagnostic::error(codes::EMIT_FAILED, format!("target `{}`: {reason}", writer.target));
+        if help.is_empty() { error } else { error.note(help) }
     };
     let point = &validated.module.entry_points[index];
     // WGSL's own layouts are those of its writers.

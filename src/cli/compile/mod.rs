@@ -114,7 +114,13 @@ fn compile_file(
     match shaders {
         Ok((shaders, left_out)) => {
             let mut warnings = context.own(left_out);
-            warnings.extend(shared_warnings(&context, &shaders));
+            // What keeps a target out is a warning for the others too.
+            let is_told = |one: &Diagnostic| {
+                warnings.iter().any(|known| known.code == one.code && known.labels == one.labels)
+            };
+            let shared = shared_warnings(&context, &shaders);
+            let shared: Diagnostics = shared.into_iter().filter(|one| !is_told(one)).collect();
+            warnings.extend(shared);
             print_warnings(&sources, &warnings, form);
             let stem = files::module_stem(file);
             let of = |shader: &CompiledShader| {

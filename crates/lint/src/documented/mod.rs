@@ -165,29 +165,32 @@ impl Call<'_> {
         argument: Place,
         documented: &Documented,
     ) -> Option<Diagnostic> {
+        let (message, help) = self.other_unit(argument, documented.unit?)?;
+        let label = format!("given for `{}`", parameter.name);
+        let warning = self.warn(codes::ARGUMENT_UNIT, argument, message, &label);
+        Some(warning.note(format!("help: write `{help}`")))
+    }
+
+    /// What is wrong with an argument that should have a unit, and what to write.
+    fn other_unit(&self, argument: Place, unit: Unit) -> Option<(String, String)> {
         let text = self.text(argument);
-        let (message, help) = match documented.unit? {
+        Some(match unit {
             Unit::Cosine => {
-                let degrees = self.constant(argument).filter(|value| value.abs() > 1.0)?;
-                let help = match DEGREES.contains(&degrees.abs()) || degrees.abs() > 7.0 {
+                let value = self.constant(argument).filter(|value| value.abs() > 1.0)?;
+                let help = match DEGREES.contains(&value.abs()) || value.abs() > 7.0 {
                     true => format!("cos(radians({text}))"),
                     false => format!("cos({text})"),
                 };
                 (format!("a cosine is in [-1, 1], and `{text}` is not one"), help)
             }
-            Unit::Radians => {
-                let value = self.constant(argument).filter(|value| DEGREES.contains(&value.abs()));
-                match (value, self.called(argument, "degrees")) {
-                    (Some(_), _) => (
-                        format!("radians are meant, and `{text}` looks like degrees"),
-                        format!("radians({text})"),
-                    ),
-                    (None, Some(inner)) => {
-                        (format!("radians are meant, and `{text}` are degrees"), inner)
-                    }
-                    (None, None) => return None,
+            Unit::Radians => match self.called(argument, "degrees") {
+                Some(inner) => (format!("radians are meant, and `{text}` are degrees"), inner),
+                None => {
+                    self.constant(argument).filter(|value| DEGREES.contains(&value.abs()))?;
+                    let message = format!("radians are meant, and `{text}` looks like degrees");
+                    (message, format!("radians({text})"))
                 }
-            }
+            },
             Unit::Degrees => {
                 let inner = self.called(argument, "radians")?;
                 (format!("degrees are meant, and `{text}` are radians"), inner)
@@ -197,20 +200,20 @@ impl Call<'_> {
                 (format!("the square of a distance is meant, and `{text}` is a distance"), squared)
             }
             Unit::Distance => {
-                let Some(Piece::Call { name: "dot", arguments }) = self.followed(argument) else {
-                    return None;
-                };
-                let [one, other] = arguments.as_slice() else { return None };
-                let one = self.text(*one);
-                if one != self.text(*other) {
-                    return None;
-                }
-                (format!("a distance is meant, and `{text}` is a square"), format!("length({one})"))
+                let vector = self.squared_vector(argument)?;
+                (
+                    format!("a distance is meant, and `{text}` is a square"),
+                    format!("length({vector})"),
+                )
             }
-        };
-        let label = format!("given for `{}`", parameter.name);
-        let warning = self.warn(codes::ARGUMENT_UNIT, argument, message, &label);
-        Some(warning.note(format!("help: write `{help}`")))
+        })
+    }
+
+    /// The vector whose square an argument is.
+    fn squared_vector(&self, argument: Place) -> Option<&str> {
+        let Piece::Call { name: "dot", arguments } = self.followed(argument)? else { return None };
+        let [one, other] = arguments.as_slice() else { return None };
+        (self.text(*one) == self.text(*other)).then(|| self.text(*one))
     }
 
     /// What an argument is, if it is a name that a `let` declares.

@@ -40,6 +40,13 @@ pub fn link_branches(module: &mut Module) {
                 let error = check_branch(open.last_mut(), index, span, otherwise).err();
                 module.errors.extend(error);
             }
+            // In a group that is skipped, only what continues or ends it is read. This would, if GLSL
+            // had it.
+            Directive::Invalid(error)
+                if error.notes.iter().any(|note| note.contains(CONTINUED)) =>
+            {
+                module.errors.push((**error).clone());
+            }
             Directive::Endif => match open.pop() {
                 Some(mut last) => {
                     last.branches.push(index);
@@ -139,14 +146,12 @@ fn read_directive(
             Ok(Directive::PragmaOnce)
         }
         known::PRAGMA => Ok(Directive::Pragma(line.whole())),
-        wrong => Err(Diagnostic::error(
-            codes::MALFORMED_DIRECTIVE,
-            format!("unknown directive `#{}`", symbols.text(wrong)),
-        )
-        .at(line.span_of(&line.module.tokens[start]), "not a directive of GLSL")
-        .suggest(symbols.text(wrong), DIRECTIVES.iter().copied())),
+        wrong => Err(line.unknown(symbols.text(wrong), start)),
     }
 }
+
+/// How the help begins for directives that continue a conditional in other languages.
+const CONTINUED: &str = "help: a conditional goes on with ";
 
 /// The tokens after a directive's name.
 struct DirectiveTokens<'m> {
@@ -186,6 +191,19 @@ impl DirectiveTokens<'_> {
 
     fn malformed(&self, message: String, label: &str) -> Diagnostic {
         Diagnostic::error(codes::MALFORMED_DIRECTIVE, message).at(self.rest(), label)
+    }
+
+    fn unknown(&self, name: &str, at: usize) -> Diagnostic {
+        let error =
+            Diagnostic::error(codes::MALFORMED_DIRECTIVE, format!("unknown directive `#{name}`"))
+                .at(self.span_of(&self.module.tokens[at]), "not a directive of GLSL");
+        let condition = self.token(0).map_or("NAME", |token| self.symbols.text(token.symbol));
+        match name {
+            "elifdef" => error.note(format!("{CONTINUED}`#elif defined({condition})`")),
+            "elifndef" => error.note(format!("{CONTINUED}`#elif !defined({condition})`")),
+            "elseif" | "elsif" | "elseifdef" => error.note(format!("{CONTINUED}`#elif`")),
+            _ => error.suggest(name, DIRECTIVES.iter().copied()),
+        }
     }
 
     fn name(&self, directive: &str) -> Result<(Symbol, Span), Diagnostic> {

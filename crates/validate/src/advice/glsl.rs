@@ -87,9 +87,24 @@ pub fn advise_glsl(text: &str, mistake: &mut Mistake) {
             "shaders have no recursion; write a loop: `int result = 1;` and `for (int i = 2; i <= n; \
              i++) { result *= i; }`",
         ),
+        [";", ..] if message.starts_with("expected ") => semicolon(text, &at, mistake),
+        [",", found] if message.starts_with("expected ") => comma(text, &at, found, mistake),
+        _ => statements(text, &at, &message, &quoted, mistake),
+    }
+}
+
+/// Errors about statements and declarations.
+fn statements(
+    text: &str,
+    at: &Range<usize>,
+    message: &str,
+    quoted: &[&str],
+    mistake: &mut Mistake,
+) {
+    match quoted {
         ["break", ..] => mistake.help("write `return` with a value to leave the function"),
         ["continue", ..] => mistake.help("write `return` to leave the function"),
-        ["flat"] => mistake.write(flat_line(text, &at)),
+        ["flat"] => mistake.write(flat_line(text, at)),
         ["discard"] => mistake.help("write `return` in the stages before it"),
         [name] if message.starts_with("the constant `") => {
             mistake.write(format!("{name} = ...;"));
@@ -103,8 +118,6 @@ pub fn advise_glsl(text: &str, mistake: &mut Mistake) {
         _ if message == "the function returns a value, and this gives none" => {
             mistake.help("write a value after `return`");
         }
-        [";", ..] if message.starts_with("expected ") => semicolon(text, &at, mistake),
-        [",", found] if message.starts_with("expected ") => comma(text, &at, found, mistake),
         _ => {}
     }
 }

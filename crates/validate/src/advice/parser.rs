@@ -500,21 +500,8 @@ fn assigned(source: &Source<'_>, _: &str, mistake: &mut Mistake) {
     let Some(lookup) = &source.lookup else { return };
     let target = source.slice(&at);
     let step = lookup.step(&at);
-    if let Some((_, Step::Assign { target: Some(target), operator, value })) = &step
-        && let Some(Piece::Member { base, name }) = lookup.piece(&target.range())
-        && name.len() > 1
-        && mistake.notes.iter().any(|note| note.contains("swizzle"))
-    {
-        let (base, value) = (source.part(base), source.part(*value));
-        let lines: Vec<String> = name
-            .chars()
-            .zip("xyzw".chars())
-            .map(|(to, from)| format!("{base}.{to} {operator} {value}.{from};"))
-            .collect();
-        mistake.message = "WGSL assigns to one component at a time".to_owned();
-        mistake.notes.clear();
-        mistake.write(lines.join(" "));
-        return;
+    if mistake.notes.iter().any(|note| note.contains("swizzle")) {
+        return swizzled(source, lookup, step, mistake);
     }
     let name = target.split(['.', '[']).next().unwrap_or_default();
     let Some(declared) = lookup.declared(name, at.start) else { return };
@@ -547,6 +534,26 @@ fn assigned(source: &Source<'_>, _: &str, mistake: &mut Mistake) {
     mistake.labels.truncate(1);
     mistake.labels.push((declared.place.range(), "declared here".to_owned()));
     mistake.help(help);
+}
+
+/// Several components that are assigned to at once.
+fn swizzled(
+    source: &Source<'_>,
+    lookup: &Lookup<'_>,
+    step: Option<(Place, Step<'_>)>,
+    mistake: &mut Mistake,
+) {
+    let Some((_, Step::Assign { target: Some(target), operator, value })) = step else { return };
+    let Some(Piece::Member { base, name }) = lookup.piece(&target.range()) else { return };
+    let (base, value) = (source.part(base), source.part(value));
+    let lines: Vec<String> = name
+        .chars()
+        .zip("xyzw".chars())
+        .map(|(to, from)| format!("{base}.{to} {operator} {value}.{from};"))
+        .collect();
+    mistake.message = "WGSL assigns to one component at a time".to_owned();
+    mistake.notes.clear();
+    mistake.write(lines.join(" "));
 }
 
 fn not_constant(source: &Source<'_>, _: &str, mistake: &mut Mistake) {

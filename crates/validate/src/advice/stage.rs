@@ -99,6 +99,17 @@ pub fn advise_port(text: &str, port: &Port, wrong: &Interface, mistake: &mut Mis
     mistake.labels.truncate(1);
     let free = (0..).find(|location| !used.contains(location)).unwrap_or(0);
     let is_result = port.parameter.is_none() && member.is_none();
+    write_port(wrong, &declared, free, is_result, mistake);
+}
+
+/// What to write in place of a declaration.
+fn write_port(
+    wrong: &Interface,
+    declared: &str,
+    free: u32,
+    is_result: bool,
+    mistake: &mut Mistake,
+) {
     match wrong {
         Interface::Unplaced { is_vertex: true } if is_result => {
             mistake.write(format!("-> @builtin(position) {declared}"));

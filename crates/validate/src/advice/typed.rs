@@ -70,16 +70,8 @@ pub fn advise_typed(text: &str, wrong: &Wrong, mistake: &mut Mistake) {
             give(converted(source.part(value), found, "bool"), mistake);
         }
         Wrong::Stored { found, expected } => stored(&source, lookup, found, expected, mistake),
-        Wrong::Argument { at, found, expected } => {
-            let Some((call, _, arguments)) = called(lookup, mistake, *at) else { return };
-            let argument = &arguments[*at];
-            mistake.labels = vec![(argument.range(), format!("this is `{}`", short_type(found)))];
-            let order = in_another_order(&source, &arguments, *at, found, expected);
-            let value = converted(source.part(*argument), found, expected);
-            match order {
-                true => mistake.help("the arguments are in another order than they are declared"),
-                false => give(value.map(|value| source.replaced(call, *argument, &value)), mistake),
-            }
+        Wrong::Argument { at, found, expected } | Wrong::Coordinates { at, found, expected } => {
+            argument(&source, lookup, *at, found, expected, mistake);
         }
         Wrong::Index { found } => {
             let Some(Piece::Index { base: _, index }) = lookup.piece(&place) else { return };
@@ -92,46 +84,78 @@ pub fn advise_typed(text: &str, wrong: &Wrong, mistake: &mut Mistake) {
         Wrong::Choices { reject, accept } => {
             choices(&source, lookup, &place, reject, accept, mistake);
         }
-        Wrong::Coordinates { at, found, expected } => {
-            let Some((call, _, arguments)) = called(lookup, mistake, *at) else { return };
-            let argument = &arguments[*at];
-            mistake.labels = vec![(argument.range(), format!("this is `{}`", short_type(found)))];
-            let value = converted(source.part(*argument), found, expected);
-            give(value.map(|value| source.replaced(call, *argument, &value)), mistake);
-        }
-        Wrong::Bounds { length } => {
-            let last = length.saturating_sub(1);
-            let Some(Piece::Index { base, index: _ }) = lookup.piece(&place) else { return };
-            let base = source.part(base);
-            mistake.help(format!("the last of its {length} elements is `{base}[{last}]`"));
-        }
+        Wrong::Bounds { length } => bounds(&source, lookup, &place, *length, mistake),
         Wrong::ReadOnly { name, is_uniform } => {
-            let Some(declared) = lookup.declared(name, 0) else { return };
-            let of_type = declared.of_type.map_or("", |of| source.part(of));
-            mistake.labels.push((declared.place.range(), "declared here".to_owned()));
-            match is_uniform {
-                true => mistake.help(format!(
-                    "a new value is one of your own: `let changed = ...;`, or `var` if it changes \
-                     again, instead of `{name}`"
-                )),
-                false => mistake.write(format!("var<storage, read_write> {name}: {of_type};")),
-            }
+            read_only(&source, lookup, name, *is_uniform, mistake);
         }
-        Wrong::Level => {
-            let called = mistake.labels.iter().find_map(|(range, _)| lookup.call(range.start));
-            if let Some((_, Piece::Call { name, arguments })) = called {
-                let texts: Vec<&str> = arguments.iter().map(|one| source.part(*one)).collect();
-                let level = name.trim_end_matches("Bias");
-                let kept = texts.len().min(if name.ends_with("Compare") { 4 } else { 3 });
-                let texts = texts[..kept].join(", ");
-                mistake.write(match name.ends_with("Compare") {
-                    true => format!("{level}Level({texts})"),
-                    false => format!("{level}Level({texts}, 0.0)"),
-                });
-            }
-        }
+        Wrong::Level => level(&source, lookup, mistake),
         Wrong::Port(..) | Wrong::Variable(..) | Wrong::Held(_) => {}
     }
+}
+
+/// An index beyond the end.
+fn bounds(
+    source: &Source<'_>,
+    lookup: &Lookup<'_>,
+    place: &Range<usize>,
+    length: u32,
+    mistake: &mut Mistake,
+) {
+    let Some(Piece::Index { base, index: _ }) = lookup.piece(place) else { return };
+    let (base, last) = (source.part(base), length.saturating_sub(1));
+    mistake.help(format!("the last of its {length} elements is `{base}[{last}]`"));
+}
+
+/// An argument of another type than its parameter.
+fn argument(
+    source: &Source<'_>,
+    lookup: &Lookup<'_>,
+    at: usize,
+    found: &str,
+    expected: &str,
+    mistake: &mut Mistake,
+) {
+    let Some((call, _, arguments)) = called(lookup, mistake, at) else { return };
+    let argument = arguments[at];
+    mistake.labels = vec![(argument.range(), format!("this is `{}`", short_type(found)))];
+    if in_another_order(source, &arguments, at, found, expected) {
+        return mistake.help("the arguments are in another order than they are declared");
+    }
+    let value = converted(source.part(argument), found, expected);
+    give(value.map(|value| source.replaced(call, argument, &value)), mistake);
+}
+
+/// A variable of the module that is assigned to, and cannot be.
+fn read_only(
+    source: &Source<'_>,
+    lookup: &Lookup<'_>,
+    name: &str,
+    is_uniform: bool,
+    mistake: &mut Mistake,
+) {
+    let Some(declared) = lookup.declared(name, 0) else { return };
+    let of_type = declared.of_type.map_or("", |of| source.part(of));
+    mistake.labels.push((declared.place.range(), "declared here".to_owned()));
+    match is_uniform {
+        true => mistake.help(format!(
+            "a new value is one of your own: `let changed = ...;`, or `var` if it changes again, \
+             instead of `{name}`"
+        )),
+        false => mistake.write(format!("var<storage, read_write> {name}: {of_type};")),
+    }
+}
+
+/// A lookup of a texture by the level that derivatives choose, where there are none.
+fn level(source: &Source<'_>, lookup: &Lookup<'_>, mistake: &mut Mistake) {
+    let Some((_, name, arguments)) = called(lookup, mistake, 1) else { return };
+    let texts: Vec<&str> = arguments.iter().map(|one| source.part(*one)).collect();
+    let (base, compares) = (name.trim_end_matches("Bias"), name.ends_with("Compare"));
+    let kept = texts.len().min(if compares { 4 } else { 3 });
+    let texts = texts[..kept].join(", ");
+    mistake.write(match compares {
+        true => format!("{base}Level({texts})"),
+        false => format!("{base}Level({texts}, 0.0)"),
+    });
 }
 
 /// The call that an error is about, with its name and its arguments, of which there are more than some.
@@ -184,26 +208,17 @@ fn operands(
     let Some(Piece::Binary { operator, left, right }) = lookup.piece(place) else { return };
     let (left_text, right_text) = (source.part(left), source.part(right));
     if matches!(operator, "&&" | "||") {
-        let sides = [(left_text, left_type, true), (right_text, right_type, false)];
-        for (text, found, is_left) in sides.into_iter().filter(|(_, found, _)| *found != "bool") {
-            let Some(value) = converted(text, found, "bool") else { continue };
-            mistake.write(match is_left {
-                true => format!("{value} {operator} {right_text}"),
-                false => format!("{left_text} {operator} {value}"),
-            });
-        }
-        return;
+        return conditions(operator, (left_text, left_type), (right_text, right_type), mistake);
     }
     if let ("&" | "|" | "^", Some(Piece::Binary { operator: inner, left: first, right: last })) =
         (operator, lookup.piece(&right.range()))
         && right_type == "bool"
     {
         let (first, last) = (source.part(first), source.part(last));
-        mistake.help(format!(
+        return mistake.help(format!(
             "`{inner}` binds tighter than `{operator}`: write `({left_text} {operator} {first}) \
              {inner} {last}`"
         ));
-        return;
     }
     if operator != "*" && (left_type.starts_with("mat") || right_type.starts_with("mat")) {
         return;
@@ -226,6 +241,21 @@ fn operands(
         true => format!("{value} {operator} {right_text}"),
         false => format!("{left_text} {operator} {value}"),
     });
+}
+
+/// Sides of `&&` and `||`, each with its type.
+fn conditions(
+    operator: &str,
+    (left, left_type): (&str, &str),
+    (right, right_type): (&str, &str),
+    mistake: &mut Mistake,
+) {
+    if let Some(value) = converted(left, left_type, "bool").filter(|_| left_type != "bool") {
+        mistake.write(format!("{value} {operator} {right}"));
+    }
+    if let Some(value) = converted(right, right_type, "bool").filter(|_| right_type != "bool") {
+        mistake.write(format!("{left} {operator} {value}"));
+    }
 }
 
 /// The type that an operand should have beside another one.

@@ -168,14 +168,7 @@ fn texture_words(module: &Module, of: &Function, error: &ExpressionError) -> Sen
         E::InvalidImageCoordinateType(dimension, value) => {
             return coordinate_words(module, of, *dimension, *value);
         }
-        E::ComparisonSamplingMismatch { .. } => {
-            return Sentence::coded(
-                codes::CALL_MISMATCH,
-                "a comparison needs a depth texture and a `sampler_comparison`; other lookups need \
-                 a `sampler`",
-            )
-            .note("help: declare the sampler as `sampler_comparison` for `textureSampleCompare`");
-        }
+        E::ComparisonSamplingMismatch { .. } => return comparison_words(),
         E::InvalidSampleOffsetExprType | E::InvalidSampleOffset(..) => {
             "the offset of a lookup is a constant, with one integer for each axis of the texture"
         }
@@ -193,16 +186,26 @@ fn texture_words(module: &Module, of: &Function, error: &ExpressionError) -> Sen
         E::InvalidImageClass(naga::ImageClass::Sampled {
             kind: naga::ScalarKind::Sint | naga::ScalarKind::Uint,
             multi: false,
-        }) => {
-            return Sentence::coded(
-                codes::CALL_MISMATCH,
-                "textures of integers are not filtered, so they are loaded and not sampled",
-            )
-            .note("help: write `textureLoad(t, vec2u(texel), 0)`");
-        }
+        }) => return unfiltered_words(),
         _ => "this texture cannot be used in this way",
     };
     Sentence::coded(codes::CALL_MISMATCH, text)
+}
+
+fn comparison_words() -> Sentence {
+    Sentence::coded(
+        codes::CALL_MISMATCH,
+        "a comparison needs a depth texture and a `sampler_comparison`; other lookups need a `sampler`",
+    )
+    .note("help: declare the sampler as `sampler_comparison` for `textureSampleCompare`")
+}
+
+fn unfiltered_words() -> Sentence {
+    Sentence::coded(
+        codes::CALL_MISMATCH,
+        "textures of integers are not filtered, so they are loaded and not sampled",
+    )
+    .note("help: write `textureLoad(t, vec2u(texel), 0)`")
 }
 
 /// Coordinates of another type than a texture has.

@@ -29,19 +29,7 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
         }
         GlobalVariableError::InvalidBinding => return binding_words(module, name),
         GlobalVariableError::Alignment(_, handle, disalignment) => {
-            let sentence = Sentence::plain(format!(
-                "the layout of {} does not fit a uniform buffer",
-                type_text(module, *handle)
-            ));
-            return match disalignment {
-                Disalignment::ArrayStride { .. } => sentence
-                    .note(disalignment.to_string().to_lowercase())
-                    .about(Wrong::Variable(name.to_owned(), Variable::Strided)),
-                Disalignment::NonHostShareable => {
-                    sentence.about(Wrong::Variable(name.to_owned(), Variable::Boolean))
-                }
-                _ => sentence.note(disalignment.to_string().to_lowercase()),
-            };
+            return layout_words(module, name, *handle, disalignment);
         }
         GlobalVariableError::InitializerExprType => {
             format!("the initializer of `{name}` must be a constant expression")
@@ -66,6 +54,28 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
         }
     };
     Sentence::plain(text)
+}
+
+/// A type whose layout a uniform buffer does not have.
+fn layout_words(
+    module: &Module,
+    name: &str,
+    of_type: Handle<naga::Type>,
+    disalignment: &Disalignment,
+) -> Sentence {
+    let sentence = Sentence::plain(format!(
+        "the layout of {} does not fit a uniform buffer",
+        type_text(module, of_type)
+    ));
+    match disalignment {
+        Disalignment::ArrayStride { .. } => sentence
+            .note(disalignment.to_string().to_lowercase())
+            .about(Wrong::Variable(name.to_owned(), Variable::Strided)),
+        Disalignment::NonHostShareable => {
+            sentence.about(Wrong::Variable(name.to_owned(), Variable::Boolean))
+        }
+        _ => sentence.note(disalignment.to_string().to_lowercase()),
+    }
 }
 
 /// A variable without a binding that needs one, or with one.
