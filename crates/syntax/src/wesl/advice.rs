@@ -64,13 +64,14 @@ fn declares_name(tokens: Tokens<'_>, at: usize) -> bool {
 /// The text of a line, up to the end of a token and without comments.
 fn line_until(tokens: Tokens<'_>, at: usize) -> &str {
     let end = tokens.tokens.get(at).map_or(tokens.text.len(), |token| token.end as usize);
-    let start = tokens.text[..end].rfind('\n').map_or(0, |found| found + 1);
-    tokens.text[start..end].trim_start()
+    let text = tokens.text.get(..end).unwrap_or_default();
+    text.rsplit('\n').next().unwrap_or_default().trim_start()
 }
 
 fn missing_semicolon(tokens: Tokens<'_>, at: usize, error: Diagnostic) -> Diagnostic {
     let Some(last) = at.checked_sub(1) else { return error };
-    let between = &tokens.text[tokens.span(last).end as usize..tokens.start(at) as usize];
+    let between = tokens.text.get(tokens.span(last).end as usize..tokens.start(at) as usize);
+    let between = between.unwrap_or_default();
     // On one line, something else is wrong.
     if !between.contains('\n') && !tokens.is(at, b'}') && at < tokens.len() {
         return error;
@@ -87,7 +88,8 @@ fn declaration(tokens: Tokens<'_>, at: usize, error: Diagnostic) -> Diagnostic {
     let (first, second) = (tokens.text(at), tokens.text(at + 1));
     if first == "let" {
         let end = tokens.find(at, tokens.len(), b';').unwrap_or(at);
-        let rest = &tokens.text[tokens.start(at) as usize + 3..tokens.start(end) as usize];
+        let rest = tokens.text.get(tokens.start(at) as usize + 3..tokens.start(end) as usize);
+        let Some(rest) = rest else { return error };
         return error.note(format!("help: `let` is for functions: write `const{rest};`"));
     }
     if first == "[" && second == "[" {
@@ -173,8 +175,9 @@ fn typed_name(tokens: Tokens<'_>, at: usize, error: Diagnostic) -> Diagnostic {
 fn braces(tokens: Tokens<'_>, at: usize, error: Diagnostic) -> Diagnostic {
     let Some(TokenKind::Word(_)) = tokens.kind(at) else { return error };
     let end = tokens.find(at, tokens.len(), b';').unwrap_or(at);
-    let text = &tokens.text[tokens.start(at) as usize..tokens.span(end).end as usize];
-    if text.contains('\n') || text.contains('{') {
+    let text = tokens.text.get(tokens.start(at) as usize..tokens.span(end).end as usize);
+    let text = text.unwrap_or_default();
+    if text.is_empty() || text.contains('\n') || text.contains('{') {
         return error;
     }
     error.note(format!("help: statements stand in braces: write `{{ {text} }}`"))

@@ -95,10 +95,14 @@ pub fn is_number(value: &str) -> bool {
 
 /// Whether a member can be written behind a text as it is.
 fn is_simple(value: &str) -> bool {
-    let mut depth = 0_i32;
+    let (mut depth, mut last) = (0_i32, ' ');
     value.chars().all(|one| {
-        depth += i32::from(matches!(one, '(' | '[')) - i32::from(matches!(one, ')' | ']'));
-        depth > 0 || one.is_alphanumeric() || matches!(one, '_' | '.' | ')' | ']' | ':')
+        // A template list follows its name without a blank.
+        let opens = matches!(one, '(' | '[') || one == '<' && last.is_alphanumeric();
+        let closes = matches!(one, ')' | ']') || one == '>' && depth > 0 && last != ' ';
+        depth += i32::from(opens) - i32::from(closes);
+        last = one;
+        depth > 0 || one.is_alphanumeric() || matches!(one, '_' | '.' | ')' | ']' | ':' | '>')
     })
 }
 
@@ -221,6 +225,8 @@ mod tests {
             ("uv", "vec2<f32>", "vec4<f32>", Some("vec4f(uv, 0.0, 1.0)")),
             ("a + b", "vec4<f32>", "vec3<f32>", Some("(a + b).xyz")),
             ("f(a + b)", "vec4<f32>", "f32", Some("f(a + b).x")),
+            ("vec3<f32>(1.0)", "vec3<f32>", "vec2<f32>", Some("vec3<f32>(1.0).xy")),
+            ("a < b", "vec3<f32>", "vec2<f32>", Some("(a < b).xy")),
             ("0.0", "AbstractFloat", "vec3<f32>", Some("vec3f(0.0)")),
             ("1", "AbstractInt", "vec3<f32>", Some("vec3f(1.0)")),
             ("1.0", "f32", "vec3<f32>", Some("vec3f(1.0)")),

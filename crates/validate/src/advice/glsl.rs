@@ -309,8 +309,9 @@ fn flat_line(text: &str, at: &Range<usize>) -> String {
 }
 
 fn line_around(text: &str, at: usize) -> &str {
-    let start = text[..at].rfind('\n').map_or(0, |found| found + 1);
-    text[start..].lines().next().unwrap_or_default()
+    let before = text.get(..at).unwrap_or_default();
+    let start = before.rfind('\n').map_or(0, |found| found + 1);
+    text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default()
 }
 
 /// `;` is missing at the end of the line before.
@@ -342,10 +343,11 @@ fn comma(text: &str, at: &Range<usize>, found: &str, mistake: &mut Mistake) {
             function_head(line).unwrap_or_else(|| "float f(float x) {".to_owned())
         ));
     } else if found == ";" {
-        let start = text[..at.start].rfind('\n').map_or(0, |found| found + 1);
+        let before = text.get(..at.start).unwrap_or_default();
+        let line = before.rsplit('\n').next().unwrap_or_default().trim();
         mistake.message = "`)` is missing".to_owned();
         mistake.labels = vec![(at.clone(), "before this".to_owned())];
-        mistake.write(format!("{});", text[start..at.start].trim()));
+        mistake.write(format!("{line});"));
     }
 }
 

@@ -13,7 +13,8 @@ pub fn member(source: &Source<'_>, name: &str, mistake: &mut Mistake) {
     mistake.message = format!("there is no member `{name}`");
     mistake.labels.iter_mut().for_each(|(_, label)| *label = "not a member".to_owned());
     let Some(lookup) = &source.lookup else { return };
-    let Some(dot) = source.text[..at.start].rfind('.') else { return };
+    let before = source.text.get(..at.start).unwrap_or_default();
+    let Some(dot) = before.rfind('.') else { return };
     // The base ends at the dot.
     let base = (0..dot).rev().find_map(|start| {
         let piece = lookup.piece(&(start..dot))?;
@@ -34,7 +35,7 @@ pub fn member(source: &Source<'_>, name: &str, mistake: &mut Mistake) {
         return mistake.write(format!("arrayLength(&{text})"));
     }
     if let Some(size) = of_type.strip_prefix("vec").and_then(|rest| rest.chars().next()) {
-        let size = size.to_digit(10).unwrap_or(4) as usize;
+        let size = size.to_digit(10).unwrap_or(4).min(4) as usize;
         let parts: Vec<String> =
             "xyzw"[..size].chars().map(|one| format!("`{text}.{one}`")).collect();
         mistake.message = format!("`{text}` is `{of_type}`, and has no `.{name}`");
