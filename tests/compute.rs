@@ -6,6 +6,7 @@
 //! what they hold afterwards, computed by hand.
 
 mod cases;
+mod random;
 mod run;
 
 use libtest_mimic::{Failed, Trial};
@@ -21,5 +22,8 @@ pub fn tests() -> Vec<Trial> {
             on_thread(|| run().map_err(words)).ok_or("panicked")?.map_err(Failed::from)
         }
     };
-    vec![Trial::test("compute::cases", on_thread(cases::all))]
+    vec![
+        Trial::test("compute::cases", on_thread(cases::all)),
+        Trial::test("compute::random", on_thread(random::programs)),
+    ]
 }

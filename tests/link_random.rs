@@ -13,7 +13,7 @@ mod outside;
 mod program;
 mod run;
 mod same;
-mod shrink;
+pub mod shrink;
 mod stages;
 mod statements;
 mod types;
@@ -311,8 +311,9 @@ fn report_finding(kind: &str, found: &Found, runner: Option<&Runner>) -> Result<
     let program = program(found.seed);
     let (mut small, mut about) = (program.clone(), found.finding.about.clone());
     if std::env::var_os("LAMPLIGHT_LINK_SHRINK").is_some() {
-        let has = |program: &Program| again(program, found.seed, kind, runner).is_some();
-        small = shrink::shrunk(&program, &has);
+        let with = |text: &str| Program { text: text.to_owned(), ..program.clone() };
+        let has = |text: &str| again(&with(text), found.seed, kind, runner).is_some();
+        small = with(&shrink::shrunk(&program.text, &has));
         about = again(&small, found.seed, kind, runner).map_or(about, |finding| finding.about);
     }
     let mut text = format!("seed {}: {kind}\n\n{}\n{}\n", found.seed, small.manifest, small.text);

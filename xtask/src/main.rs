@@ -10,6 +10,7 @@ mod faults;
 mod frames;
 mod make;
 mod mutate;
+mod random;
 mod record;
 mod site;
 mod tables;
@@ -80,6 +81,11 @@ const COMMANDS: &[XtaskCommand] = &[
         "frames",
         "draw permutations of `forward` from the bytes of every target: [--permutations N] [--target T]",
         frames::run,
+    ),
+    (
+        "random",
+        "random programs, graphics and compute, run in every target: [--programs N] [--seed N] [--kind graphics|compute]",
+        random::run,
     ),
     (
         "site",

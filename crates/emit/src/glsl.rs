@@ -137,6 +137,7 @@ fn first_needs(version: Version) -> Needs {
         bounded_integers: true,
         clamped_bytes: !has_since(version, 400, Some(310)),
         clamped_words: !has_since(version, 420, Some(300)),
+        enclosed_bytes: true,
         separate_choices: false,
     }
 }

@@ -16,7 +16,8 @@ pub fn isolate(validated: &Validated, entry: &str) -> Result<Validated, Diagnost
         .map_err(|error| vec![error])
 }
 
-fn keep_entry(validated: &Validated, index: usize) -> Result<Validated, Diagnostic> {
+/// [`isolate`] on the own stack, for the entry point of an index.
+pub fn keep_entry(validated: &Validated, index: usize) -> Result<Validated, Diagnostic> {
     let mut module = validated.module.clone();
     module.entry_points = vec![module.entry_points.swap_remove(index)];
     compact(&mut module, KeepUnused::No);
@@ -26,4 +27,22 @@ fn keep_entry(validated: &Validated, index: usize) -> Result<Validated, Diagnost
         Diagnostic::error(codes::NAGA_INTERNAL, message)
     })?;
     Ok(Validated { language: validated.language, module, info, portable: validated.portable })
+}
+
+/// The module of one entry point, in which every override is a constant: its default.
+///
+/// # Errors
+/// `unknown-entry-point`, `override-without-value`, and `emit-failed` where a default cannot be
+/// computed.
+pub fn with_defaults(
+    module: &naga::Module,
+    entry: &str,
+) -> Result<(naga::Module, naga::valid::ModuleInfo), Diagnostic> {
+    let info = info_unchecked(module).map_err(|error| {
+        Diagnostic::error(codes::NAGA_INTERNAL, format!("the module is not valid: {error}"))
+    })?;
+    let language = lamplight_bundle::Language::Wesl;
+    let validated = Validated { language, module: module.clone(), info, portable: false };
+    let index = super::find_target(&validated, entry)?;
+    super::specialise::with_defaults(&validated, index)
 }

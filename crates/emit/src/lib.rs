@@ -52,7 +52,7 @@ mod zeros;
 
 pub use filters::without_derivative_rule;
 pub use header::is_header_line;
-pub use isolate::isolate;
+pub use isolate::{isolate, with_defaults};
 pub use names::type_name;
 pub use reflect::reflect;
 
@@ -256,6 +256,7 @@ fn written_plainly(
         Overrides::Kept => None,
         _ => specialise::with_constants(validated, index)?,
     };
+    let own = index;
     let (module, info, index) = match &fixed {
         Some((module, info)) => (module, info, 0),
         None => (&validated.module, &validated.info, index),
@@ -273,14 +274,7 @@ fn written_plainly(
     if let Some(written) = specialise::write_open(&source, writer) {
         return written.map_err(failed);
     }
-    let chosen = Some((point.stage, point.name.as_str()));
-    let (module, info) = naga::back::pipeline_constants::process_overrides(
-        module,
-        info,
-        chosen,
-        &Default::default(),
-    )
-    .map_err(|error| failed(error.to_string()))?;
+    let (module, info) = specialise::with_defaults(validated, own)?;
     (writer.write)(&EmitSource { module: &module, info: &info, index: 0, ..source }).map_err(failed)
 }
 

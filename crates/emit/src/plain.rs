@@ -31,6 +31,9 @@ pub struct Needs {
     /// Unpacked numbers of 8 bits and of 16 bits that are never below -1.
     pub clamped_bytes: bool,
     pub clamped_words: bool,
+    /// Four unsigned numbers packed to bytes, as an operand of something: naga's writers of texts put
+    /// no parentheses around the operators that they write for it.
+    pub enclosed_bytes: bool,
 }
 
 /// What stands in the place of an expression.
@@ -42,6 +45,8 @@ enum Form {
     /// A division or a remainder: of vectors of this size, of signed integers.
     Defined(Option<VectorSize>, bool),
     Clamped(VectorSize),
+    /// An operand of an operator, around which each writer puts parentheses.
+    Enclosed,
     /// A conversion of vectors of this size to integers, from floats with these bounds.
     Bounded(Option<VectorSize>, [Literal; 2]),
 }
@@ -127,6 +132,9 @@ fn forms(
             Expression::Math { fun: MathFunction::Unpack2x16snorm, .. } if needs.clamped_words => {
                 Some(Form::Clamped(VectorSize::Bi))
             }
+            Expression::Math {
+                fun: MathFunction::Pack4xU8 | MathFunction::Pack4xU8Clamp, ..
+            } if needs.enclosed_bytes => Some(Form::Enclosed),
             _ => None,
         };
         found.extend(form.map(|form| (handle, form)));
@@ -233,6 +241,11 @@ impl Maker<'_> {
                 let least = self.add(Expression::Splat { size, value: least });
                 let (fun, arg1) = (MathFunction::Max, Some(least));
                 self.add(Expression::Math { fun, arg: value, arg1, arg2: None, arg3: None })
+            }
+            (Form::Enclosed, expression) => {
+                let (left, right) =
+                    (self.add(expression), self.add(Expression::Literal(Literal::U32(0))));
+                self.both(BinaryOperator::InclusiveOr, left, right)
             }
             (Form::Bounded(size, bounds), Expression::As { expr, kind, convert }) => {
                 let [least, most] = bounds.map(|bound| self.all(size, bound));

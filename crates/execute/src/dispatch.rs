@@ -10,10 +10,9 @@ use super::shipped::Shipped;
 use lamplight_bundle::Binding;
 use lamplight_bundle::Target;
 use lamplight_diagnostic::Diagnostic;
+use lamplight_emit::with_defaults;
 use lamplight_eval::{Machine, Program, Resources};
-use lamplight_validate::info_of;
 use naga::AddressSpace;
-use naga::back::pipeline_constants::process_overrides;
 
 /// In which form an executor takes compute entry points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -94,11 +93,7 @@ pub(super) fn evaluate(dispatch: &Dispatch<'_>) -> DispatchResult {
     let ComputeStage::Module(EntryPoint { module, entry }) = dispatch.stage else {
         return Err(executor_failed("the evaluator runs modules only"));
     };
-    let invalid = |error: String| executor_failed(format!("the module is not valid: {error}"));
-    let info = info_of(module).map_err(|error| invalid(error.to_string()))?;
-    let stage = Some((naga::ShaderStage::Compute, entry));
-    let (module, info) = process_overrides(module, &info, stage, &Default::default())
-        .map_err(|error| invalid(error.to_string()))?;
+    let (module, info) = with_defaults(module, entry)?;
     let program = Program::new(&module, &info).map_err(eval_failed)?;
     let id = program.function(entry);
     let id = id.ok_or_else(|| executor_failed(format!("there is no entry point `{entry}`")))?;

@@ -195,6 +195,9 @@ impl<'n> LoopRewrite<'n> {
         let named = std::mem::take(&mut function.named_expressions);
         function.named_expressions =
             named.into_iter().map(|(value, name)| (self.moved[&value], name)).collect();
+        for (_, LocalVariable { name: _, ty: _, init }) in function.local_variables.iter_mut() {
+            init.iter_mut().for_each(|value| *value = self.found(*value, &[]));
+        }
         let mut body = std::mem::take(&mut function.body);
         self.block(&mut body, &mut Vec::new());
         function.body = body;

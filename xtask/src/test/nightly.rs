@@ -2,7 +2,7 @@
 
 use xtask::{CommandFailure, CommandResult, process};
 
-use crate::{ci, faults, frames, make, mutate};
+use crate::{ci, faults, frames, mutate, random};
 
 /// A part: what it does, and the command that does it.
 type NightlyPart = (&'static str, fn() -> CommandResult);
@@ -10,9 +10,7 @@ type NightlyPart = (&'static str, fn() -> CommandResult);
 const PARTS: [NightlyPart; 6] = [
     ("every test, whole", every_test),
     ("frames from the bytes of every target", || frames::run(&[])),
-    ("20,000 random programs", || {
-        make::run("fuzz", &words("link --programs 20000 --seed 20261126"))
-    }),
+    ("20,000 random programs", || random::run(&words("--programs 20000"))),
     ("mutants of the whole library", || mutate::run(&[])),
     ("faults of the system", || faults::run(&[])),
     ("packages as they are published", ci::check_publishing),

@@ -11,11 +11,11 @@ use naga::back::pipeline_constants::{PipelineConstantError, process_overrides};
 use naga::compact::{KeepUnused, compact};
 use naga::valid::{ModuleInfo, TypeError, ValidationError};
 use naga::{
-    ArraySize, EntryPoint, Expression, Function, GlobalVariable, Handle, Literal, Module, Override,
-    Span, Type, TypeInner,
+    Arena, ArraySize, EntryPoint, Expression, Function, GlobalVariable, Handle, Literal, Module,
+    Override, ShaderStage, Span, StructMember, Type, TypeInner,
 };
 
-use super::literal_of;
+use super::{isolate, literal_of};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_validate::{Validated, info_unchecked, operands};
 
@@ -148,9 +148,9 @@ fn values_in(validated: &Validated, index: usize) -> Result<(Module, DefaultValu
     let values = module.overrides.iter().filter(|(handle, _)| is_known(*handle));
     let values = values
         .filter_map(|(handle, _)| Some((handle, *computed.get(number_name(handle).as_str())?)));
-    let workgroup_size = match made.entry_points.as_slice() {
-        [only] => only.workgroup_size,
-        all => all.get(index).map_or(point.workgroup_size, |one| one.workgroup_size),
+    let workgroup_size = match made.entry_points.first() {
+        Some(made) if point.stage == ShaderStage::Compute => made.workgroup_size,
+        _ => point.workgroup_size,
     };
     let values = values.collect();
     Ok((made, DefaultValues { values, workgroup_size }))
@@ -176,12 +176,39 @@ fn module_of_defaults(
     for (handle, found) in named.global_variables.iter_mut() {
         found.name = Some(variable_name(handle));
     }
-    let assumed: PipelineConstants =
-        without.iter().map(|handle| (number_name(*handle), 1.0)).collect();
-    let entry = Some((point.stage, point.name.as_str()));
+    named.entry_points.retain(|one| one.stage == point.stage && one.name == point.name);
+    compact(&mut named, KeepUnused::No);
+    keep_names_only(&mut named);
+    let is_there =
+        |name: &String| named.overrides.iter().any(|(_, one)| one.name.as_ref() == Some(name));
+    let names = without.iter().map(|handle| number_name(*handle)).filter(is_there);
+    let assumed: PipelineConstants = names.map(|name| (name, 1.0)).collect();
+    let entry = Some((ShaderStage::Compute, point.name.as_str()));
     let (made, _) = process_overrides(&named, &validated.info, entry, &assumed)
         .map_err(|error| Diagnostic::error(codes::EMIT_FAILED, reason(&error)))?;
     Ok(made.into_owned())
+}
+
+/// Leaves of an entry point only that it needs these overrides and variables. naga computes constants
+/// of functions together with overrides, and makes a module that is not valid of some: an element
+/// of a constant array is emitted once more.
+fn keep_names_only(module: &mut Module) {
+    let overrides = module.overrides.iter().map(|(handle, _)| Expression::Override(handle));
+    let variables =
+        module.global_variables.iter().map(|(handle, _)| Expression::GlobalVariable(handle));
+    let mut kept = Function::default();
+    for expression in overrides.chain(variables) {
+        let value = kept.expressions.append(expression, Span::UNDEFINED);
+        kept.named_expressions.insert(value, format!("lamplight_kept_{}", value.index()));
+    }
+    for point in &mut module.entry_points {
+        // Other stages must have results.
+        if point.stage != ShaderStage::Compute {
+            (point.stage, point.workgroup_size) = (ShaderStage::Compute, [1; 3]);
+        }
+        point.function = kept.clone();
+    }
+    module.functions = Arena::new();
 }
 
 /// A name that leads back to the variable.
@@ -221,42 +248,62 @@ fn put_initial_values(
     Ok(())
 }
 
-/// A value of another module: numbers, and vectors and matrices of them.
+/// A value of another module.
 fn copied_value(
     made: &Module,
     value: Handle<Expression>,
     module: &mut Module,
 ) -> Result<Handle<Expression>, Diagnostic> {
-    let other = || {
-        let message = "the initial value of a variable is an array or a structure, and computed \
-                       from overrides";
-        Diagnostic::error(codes::EMIT_FAILED, message)
-    };
-    let copied_type = |ty: Handle<Type>, module: &mut Module| match &made.types[ty].inner {
-        TypeInner::Scalar(_)
-        | TypeInner::Vector { size: _, scalar: _ }
-        | TypeInner::Matrix { columns: _, rows: _, scalar: _ } => {
-            Ok(module.types.insert(made.types[ty].clone(), Span::UNDEFINED))
-        }
-        _ => Err(other()),
-    };
     let copy = match &made.global_expressions[value] {
         Expression::Literal(literal) => Expression::Literal(*literal),
         Expression::Constant(constant) => {
             return copied_value(made, made.constants[*constant].init, module);
         }
-        Expression::ZeroValue(ty) => Expression::ZeroValue(copied_type(*ty, module)?),
+        Expression::ZeroValue(ty) => Expression::ZeroValue(copied_type(made, *ty, module)?),
         Expression::Compose { ty, components } => {
-            let ty = copied_type(*ty, module)?;
+            let ty = copied_type(made, *ty, module)?;
             let parts = components.iter().map(|part| copied_value(made, *part, module));
             Expression::Compose { ty, components: parts.collect::<Result<_, _>>()? }
         }
         Expression::Splat { size, value } => {
             Expression::Splat { size: *size, value: copied_value(made, *value, module)? }
         }
-        _ => return Err(other()),
+        _ => return Err(not_copied()),
     };
     Ok(module.global_expressions.append(copy, Span::UNDEFINED))
+}
+
+fn not_copied() -> Diagnostic {
+    let message = "the initial value of a variable is computed from overrides in a way that is \
+                   not known";
+    Diagnostic::error(codes::EMIT_FAILED, message)
+}
+
+/// A type of another module, which differs from the own one in what it leaves out.
+fn copied_type(
+    made: &Module,
+    ty: Handle<Type>,
+    module: &mut Module,
+) -> Result<Handle<Type>, Diagnostic> {
+    let Type { name, inner } = &made.types[ty];
+    let inner = match inner {
+        TypeInner::Scalar(_)
+        | TypeInner::Vector { size: _, scalar: _ }
+        | TypeInner::Matrix { columns: _, rows: _, scalar: _ } => inner.clone(),
+        TypeInner::Array { base, size, stride } => {
+            let base = copied_type(made, *base, module)?;
+            TypeInner::Array { base, size: *size, stride: *stride }
+        }
+        TypeInner::Struct { members, span } => {
+            let copied = |member: &StructMember| {
+                Ok(StructMember { ty: copied_type(made, member.ty, module)?, ..member.clone() })
+            };
+            let members = members.iter().map(copied).collect::<Result<_, Diagnostic>>()?;
+            TypeInner::Struct { members, span: *span }
+        }
+        _ => return Err(not_copied()),
+    };
+    Ok(module.types.insert(Type { name: name.clone(), inner }, Span::UNDEFINED))
 }
 
 /// Why naga could not compute a size or a default.
@@ -291,16 +338,42 @@ pub fn with_constants(
     validated: &Validated,
     index: usize,
 ) -> Result<Option<(Module, ModuleInfo)>, Diagnostic> {
-    let deciding = deciding(&validated.module);
-    if deciding.is_empty() {
-        return Ok(None);
+    match deciding(&validated.module).is_empty() {
+        true => Ok(None),
+        false => fixed_module(validated, index, deciding).map(Some),
     }
-    let (made, defaults) = values_in(validated, index)?;
+}
+
+/// The module of one entry point, in which all overrides are constants.
+///
+/// # Errors
+/// As those of [`with_constants`].
+pub fn with_defaults(
+    validated: &Validated,
+    index: usize,
+) -> Result<(Module, ModuleInfo), Diagnostic> {
+    let all = |module: &Module| module.overrides.iter().map(|(handle, _)| handle).collect();
+    let (module, info) = fixed_module(validated, index, all)?;
+    let open = module.overrides.iter().map(|(handle, _)| handle).next();
+    match open {
+        None => Ok((module, info)),
+        Some(handle) => Err(missing_value(shown_name(&module, handle), "an output")),
+    }
+}
+
+/// What the entry point does not need is left out first: its lengths and defaults may have no value.
+fn fixed_module(
+    validated: &Validated,
+    index: usize,
+    chosen: impl Fn(&Module) -> Overrides,
+) -> Result<(Module, ModuleInfo), Diagnostic> {
+    let validated = &isolate::keep_entry(validated, index)?;
+    let (made, defaults) = values_in(validated, 0)?;
     let DefaultValues { values, workgroup_size } = defaults;
     let mut module = validated.module.clone();
-    module.entry_points = vec![module.entry_points.swap_remove(index)];
+    let chosen = chosen(&module);
     let fixed: BTreeMap<Handle<Override>, Literal> =
-        values.into_iter().filter(|(handle, _)| deciding.contains(handle)).collect();
+        values.into_iter().filter(|(handle, _)| chosen.contains(handle)).collect();
     for (_, expression) in module.global_expressions.iter_mut() {
         put_literal(expression, &fixed);
     }
@@ -324,7 +397,7 @@ pub fn with_constants(
         let message = format!("a module with constants for overrides is not valid: {error}");
         Diagnostic::error(codes::NAGA_INTERNAL, message)
     })?;
-    Ok(Some((module, info)))
+    Ok((module, info))
 }
 
 fn put_literals(function: &mut Function, fixed: &BTreeMap<Handle<Override>, Literal>) {

@@ -10,7 +10,7 @@ mod kept;
 mod spirv;
 mod text;
 
-pub use fixed::{default_values, is_length, with_constants};
+pub use fixed::{default_values, is_length, with_constants, with_defaults};
 pub use kept::{with_expressions, written_module};
 
 use std::collections::BTreeSet;
@@ -19,7 +19,7 @@ use naga::back::wgsl::{WriterFlags, write_string};
 use naga::{Expression, Handle, Literal, Module, Override, Scalar, ScalarKind, TypeInner};
 
 use super::sized::with_sizes;
-use super::{EmitSource, Emitted, Overrides, TargetEntry, targets};
+use super::{EmitSource, Emitted, Overrides, TargetEntry, isolate, targets};
 use lamplight_bundle::{OverrideChoice, Target};
 use lamplight_compose::Composed;
 use lamplight_diagnostic::Diagnostics;

@@ -99,7 +99,12 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         return Err(lacks::GROUP_COUNT.to_owned());
     }
     // naga computes these without the lower bound of the result.
-    let needs = Needs { clamped_bytes: true, clamped_words: true, ..Needs::default() };
+    let needs = Needs {
+        clamped_bytes: true,
+        clamped_words: true,
+        enclosed_bytes: true,
+        ..Needs::default()
+    };
     let plain = plain::with_plain_forms(source.module, source.info, needs)?;
     let (module, info) =
         plain.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
@@ -117,7 +122,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let name = first_entry_name(info.entry_point_names)?;
     let text = setters::by_reference(&lists::with_plain_constants(&text.0));
     let text = columns::without_casts(&zeros::without_casts(&text));
-    let text = rows::with_major_rows(&text);
+    let text = rows::with_major_rows(&setters::without_undeclared(&text));
     let text = text.replace(&format!("[{UNBOUNDED}] : register"), "[] : register");
     Ok(Emitted { bytes: text.into_bytes(), native: hlsl_reflection(source, &name, &options) })
 }

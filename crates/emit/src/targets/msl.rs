@@ -13,7 +13,8 @@ use naga::back::msl::{
 use crate::names::first_entry_name;
 use crate::slots::{Numbering, UsedBinding, assign_slots, native_reflection};
 use crate::text::BoundedText;
-use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, fractions, gradients, invariants, packed, rename};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, fractions, gradients, invariants, packed, plain, rename};
+use crate::plain::Needs;
 use lamplight_validate::BINDING_ARRAYS;
 use lamplight_bundle::{BindingKind, BufferSizes, Target};
 
@@ -44,6 +45,11 @@ const SIZES_BUFFER: u8 = 30;
 fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let plainer = invariants::without_invariant_inputs(source.module, source.stage);
     let source = &EmitSource { module: plainer.as_ref().unwrap_or(source.module), ..*source };
+    let needs = Needs { enclosed_bytes: true, ..Needs::default() };
+    let plain = plain::with_plain_forms(source.module, source.info, needs)?;
+    let (module, info) =
+        plain.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
+    let source = &EmitSource { module, info, ..*source };
     let options = Options {
         lang_version: (2, 0),
         per_entry_point_map: BTreeMap::from([(source.entry.to_owned(), entry_resources(source)?)]),

@@ -116,6 +116,21 @@ fn with_unsigned_zeros(text: &[u8]) -> Vec<u8> {
     text.split_inclusive('\n').map(change).collect::<String>().into_bytes()
 }
 
+/// The text with the lengths of byte buffers in bytes. glslangValidator gives them in words.
+fn with_byte_lengths(text: &[u8]) -> Vec<u8> {
+    let text = String::from_utf8_lossy(text);
+    let mut is_length = false;
+    let change = |line: &str| {
+        is_length =
+            line.starts_with("uint NagaBufferLength") || is_length && !line.starts_with('}');
+        match is_length {
+            true => line.replace("return ret;", "return ret * 4u;"),
+            false => line.to_owned(),
+        }
+    };
+    text.split_inclusive('\n').map(change).collect::<String>().into_bytes()
+}
+
 /// Whether glslangValidator gives members of a constant buffer other offsets than Direct3D does. In
 /// Direct3D the last row of a matrix, or the last element of an array, ends with its last number,
 /// and naga adds a member to fill the rest.
@@ -125,7 +140,24 @@ fn is_misplaced(text: &str) -> bool {
         is_matrix || line.trim_end().ends_with("];")
     };
     let is_filler = |line: &str| line.trim_start().starts_with("int _pad");
-    text.lines().zip(text.lines().skip(1)).any(|(line, next)| is_short(line) && is_filler(next))
+    let mut open: Vec<&str> = text.lines().filter(|line| line.starts_with("cbuffer ")).collect();
+    let mut seen: Vec<&str> = Vec::new();
+    while let Some(member) = open.pop() {
+        // The type of a member is the first word with a structure of that name.
+        let named = text_words(member).map(|word| word.text).filter(|name| !seen.contains(name));
+        let names: Vec<&str> = named.collect();
+        for name in names {
+            let Some((_, body)) = text.split_once(&format!("struct {name} {{")) else { continue };
+            seen.push(name);
+            let members: Vec<&str> = body.lines().take_while(|line| *line != "};").collect();
+            let mut pairs = members.iter().zip(members.iter().skip(1));
+            if pairs.any(|(line, next)| is_short(line) && is_filler(next)) {
+                return true;
+            }
+            open.extend(members);
+        }
+    }
+    false
 }
 
 /// Compiles the text to SPIR-V. Its sampler heaps go into bind group `group`.
@@ -154,7 +186,7 @@ fn compile_hlsl(
             "-o",
             "/dev/stdout",
         ],
-        &with_unsigned_zeros(text),
+        &with_byte_lengths(&with_unsigned_zeros(text)),
     )?;
     // The static samplers are still variables here, which Vulkan does not allow.
     let legal = SPIRV_OPT
