@@ -18,7 +18,8 @@ const ATOMICS: [(&str, &str, Scalar); 7] = [
 ];
 
 impl Draft {
-    pub fn entry(&mut self) {
+    /// Adds the variables of workgroups.
+    fn shared(&mut self) -> Shared {
         let [x, y, z] = self.size;
         let count = x * y * z;
         let length = match self.random.below(3) {
@@ -35,6 +36,12 @@ impl Draft {
         self.add("var<workgroup> lowest: atomic<i32>;");
         let plan = self.random.pick(&types[..5]).clone();
         self.add(&format!("var<workgroup> plan: {};", plan.spelt(&self.structs)));
+        Shared { element, plan, count }
+    }
+
+    pub fn entry(&mut self) {
+        let shared = self.shared();
+        let count = shared.count;
         let [groups_x, groups_y, _] = self.groups;
         let mut named = self.global.clone();
         named.push(Named::new("seed", UINT, false));
@@ -55,7 +62,6 @@ impl Draft {
         for _ in 0..3 {
             body.variable();
         }
-        let shared = Shared { element, plan, count };
         for _ in 0..2 + body.random.below(3) {
             phase(&mut body, &shared);
         }

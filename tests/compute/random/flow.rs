@@ -125,19 +125,24 @@ impl Body<'_> {
         self.named.truncate(known);
     }
 
-    pub fn switch(&mut self, nesting: usize) {
-        let is_signed = self.random.chance(50);
-        let (ty, suffix) = if is_signed { (INT, "") } else { (UINT, "u") };
-        let value = self.value(&ty, 2);
+    /// The head of a switch. It may have an effect.
+    fn switched(&mut self, ty: &Ty) -> String {
+        let value = self.value(ty, 2);
         let spelt = ty.spelt(self.structs);
-        let changed = if is_signed { None } else { self.whole_variable(&UINT, &[]) };
-        let head = match changed {
+        let changed = if *ty == INT { None } else { self.whole_variable(&UINT, &[]) };
+        match changed {
             Some(Named { path, .. }) if !path.starts_with('(') && self.random.chance(30) => {
                 format!("switch bump(&{path}) % 4u {{")
             }
             _ if self.random.chance(50) => format!("switch {spelt}({value}) & {spelt}(3) {{"),
             _ => format!("switch {spelt}({value}) {{"),
-        };
+        }
+    }
+
+    pub fn switch(&mut self, nesting: usize) {
+        let is_signed = self.random.chance(50);
+        let (ty, suffix) = if is_signed { (INT, "") } else { (UINT, "u") };
+        let head = self.switched(&ty);
         let attribute = self.attribute();
         self.line(format!("{attribute}{head}"));
         if self.random.chance(8) {

@@ -159,19 +159,7 @@ impl Body<'_> {
                 let op = *self.random.pick(&["/", "%"]);
                 format!("({a} {op} {})", self.computed(ty, depth))
             }
-            7 => {
-                let by = match ty {
-                    Ty::Vector(size, _) => Ty::Vector(*size, Scalar::Uint),
-                    _ => UINT,
-                };
-                let by = self.typed(&by, depth);
-                let op = *self.random.pick(&["<<", ">>"]);
-                let mask = match ty {
-                    Ty::Vector(size, _) => format!("vec{size}u(31u)"),
-                    _ => "31u".to_owned(),
-                };
-                format!("({a} {op} ({by} & {mask}))")
-            }
+            7 => self.shifted(ty, &a, depth),
             8 => {
                 let fun = *self.random.pick(&["min", "max"]);
                 format!("{fun}({a}, {})", self.typed(ty, depth))
@@ -204,6 +192,16 @@ impl Body<'_> {
                 _ => format!("{spelt}({a})"),
             },
         }
+    }
+
+    fn shifted(&mut self, ty: &Ty, a: &str, depth: usize) -> String {
+        let (by, mask) = match ty {
+            Ty::Vector(size, _) => (Ty::Vector(*size, Scalar::Uint), format!("vec{size}u(31u)")),
+            _ => (UINT, "31u".to_owned()),
+        };
+        let by = self.typed(&by, depth);
+        let op = *self.random.pick(&["<<", ">>"]);
+        format!("({a} {op} ({by} & {mask}))")
     }
 
     /// An integer that is known only while the shader runs: operations on constants must not
