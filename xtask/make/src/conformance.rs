@@ -3,6 +3,7 @@
 //! where they come from.
 
 mod cts;
+mod deqp;
 mod folder;
 mod glsl;
 mod table;
@@ -10,6 +11,7 @@ mod wesl;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use lamplight::diagnostic::{Diagnostic, Severity, codes};
 use lamplight::lint;
@@ -37,6 +39,8 @@ enum Suite {
     Cts,
     /// The suite for composers of WESL.
     Wesl,
+    /// dEQP's shader library.
+    Deqp,
     /// Shaders in WGSL, of which Tint says whether they are valid.
     Folder,
 }
@@ -46,6 +50,7 @@ impl Suite {
         match () {
             () if folder.join("src/webgpu/shader/validation").is_dir() => Self::Cts,
             () if folder.join(wesl::CASES).is_dir() => Self::Wesl,
+            () if folder.join(deqp::FOLDERS[0]).is_dir() => Self::Deqp,
             () => Self::Folder,
         }
     }
@@ -54,6 +59,7 @@ impl Suite {
         match self {
             Self::Cts => "cts",
             Self::Wesl => "wesl",
+            Self::Deqp => "deqp",
             Self::Folder => "folder",
         }
     }
@@ -83,6 +89,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
         let table = match suite {
             Suite::Cts => tabulate(&cts::programs(&folder)?),
             Suite::Wesl => wesl::tabulate(&folder)?,
+            Suite::Deqp => deqp::tabulate(&folder)?,
             Suite::Folder => tabulate(&folder::programs(&folder)?),
         };
         println!("{}: {}", folder.display(), table.programs());
@@ -117,6 +124,32 @@ fn tabulate(programs: &[Program]) -> Table {
         table.add(program, refusal(&program.text).as_ref());
     }
     table
+}
+
+/// What a function gives for each of some inputs, in their order, computed by several threads.
+fn in_parallel<I: Sync, O: Send>(
+    inputs: &[I],
+    threads: usize,
+    work: impl Fn(&I) -> O + Sync,
+) -> Vec<O> {
+    let next = AtomicUsize::new(0);
+    let take = || {
+        let mut made = Vec::new();
+        loop {
+            let at = next.fetch_add(1, Ordering::Relaxed);
+            let Some(input) = inputs.get(at) else { return made };
+            made.push((at, work(input)));
+        }
+    };
+    let mut made: Vec<(usize, O)> = std::thread::scope(|scope| {
+        let running: Vec<_> = (0..threads).map(|_| scope.spawn(take)).collect();
+        let joined = running.into_iter().map(|thread| thread.join());
+        joined
+            .flat_map(|made| made.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect()
+    });
+    made.sort_by_key(|(at, _)| *at);
+    made.into_iter().map(|(_, output)| output).collect()
 }
 
 /// Why the crate refuses a text for browsers: an error, or what is one for the target `wgsl`.

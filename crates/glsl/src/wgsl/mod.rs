@@ -19,6 +19,7 @@ mod stmt;
 mod texture;
 mod value;
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use lamplight_diagnostic::source::{SourceId, Span};
@@ -224,8 +225,9 @@ impl<'s> Writer<'s> {
             let text = &self.source_text[comment.range()];
             let behind = self.source_text[..comment.start as usize].rsplit('\n').next();
             let trailing = behind.is_some_and(|line| !line.trim().is_empty());
+            let text = comment_text(text);
             let one_line = !text.contains('\n');
-            if trailing && one_line && text.starts_with("//") && self.lines.append(text) {
+            if trailing && one_line && text.starts_with("//") && self.lines.append(&text) {
                 continue;
             }
             for line in text.lines() {
@@ -308,5 +310,35 @@ impl<'s> Writer<'s> {
             Op::Xor => "^=",
             _ => return None,
         })
+    }
+}
+
+/// What ends a line in WGSL, and with it a comment.
+const BREAKS: [char; 7] = ['\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{2028}', '\u{2029}'];
+
+/// A comment as WGSL reads it. Block comments nest there, a backslash does not join two lines, and
+/// other characters end a line too.
+fn comment_text(comment: &str) -> Cow<'_, str> {
+    match comment.strip_prefix("/*") {
+        Some(inside) if inside.contains("/*") => {
+            Cow::Owned(format!("/*{}", inside.replace("/*", "/ *")))
+        }
+        None if comment.contains(BREAKS) => Cow::Owned(comment.replace(BREAKS, "\n// ")),
+        Some(_) | None => Cow::Borrowed(comment),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::comment_text;
+
+    #[test]
+    fn comments_end_where_they_ended() {
+        assert_eq!(comment_text("/* a */"), "/* a */");
+        assert_eq!(comment_text("/* a /* b */"), "/* a / * b */");
+        assert_eq!(comment_text("/*/ a /*/"), "/*/ a / */");
+        assert_eq!(comment_text("// a"), "// a");
+        assert_eq!(comment_text("// a \\\nb"), "// a \\\n// b");
+        assert_eq!(comment_text("// a\u{2028}b"), "// a\n// b");
     }
 }

@@ -59,10 +59,12 @@ pub(super) fn is_word(name: &str) -> bool {
 
 /// A name that WGSL takes, before clashes are looked for.
 pub(super) fn plain_name(name: &str) -> String {
-    if is_word(name) {
-        return format!("{}_", name.trim_start_matches('_')).replace("__", "_");
+    match name.trim_start_matches('_') {
+        _ if !is_word(name) => name.to_owned(),
+        // WGSL has no name of underscores alone.
+        "" => "_0".to_owned(),
+        stem => format!("{stem}_").replace("__", "_"),
     }
-    name.to_owned()
 }
 
 /// The name of a type for values.

@@ -8,9 +8,7 @@ use xtask::CommandFailure;
 
 /// All WGSL files below a folder, in the order of their paths.
 pub fn programs(folder: &Path) -> Result<Vec<Program>, CommandFailure> {
-    let mut files = Vec::new();
-    collect(folder, &mut files)?;
-    files.sort();
+    let files = files_below(folder, "wgsl")?;
     let read = |file: PathBuf| {
         let text = std::fs::read_to_string(&file)
             .map_err(|error| CommandFailure::input(format!("`{}`: {error}", file.display())))?;
@@ -21,14 +19,22 @@ pub fn programs(folder: &Path) -> Result<Vec<Program>, CommandFailure> {
     files.into_iter().map(read).collect()
 }
 
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), CommandFailure> {
+/// All files below a folder whose names end so, in the order of their paths.
+pub fn files_below(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, CommandFailure> {
+    let mut files = Vec::new();
+    collect(folder, extension, &mut files)?;
+    files.sort();
+    Ok(files)
+}
+
+fn collect(folder: &Path, extension: &str, files: &mut Vec<PathBuf>) -> Result<(), CommandFailure> {
     let failed =
         |error: std::io::Error| CommandFailure::input(format!("`{}`: {error}", folder.display()));
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         if path.is_dir() {
-            collect(&path, files)?;
-        } else if path.extension().is_some_and(|extension| extension == "wgsl") {
+            collect(&path, extension, files)?;
+        } else if path.extension().is_some_and(|found| found == extension) {
             files.push(path);
         }
     }

@@ -9,7 +9,7 @@ use super::Program;
 use xtask::CommandFailure;
 
 /// One line for each suite: its name, its commit or `any`, the count of programs, of those wrongly
-/// refused and of those wrongly accepted. A comment begins with `#`.
+/// refused, of those wrongly accepted, and of those with wrong values. A comment begins with `#`.
 const EXPECTED: &str = include_str!("expected.txt");
 
 /// How many causes are printed.
@@ -23,6 +23,16 @@ pub struct Table {
     /// By cause, the names of the programs.
     wrongly_refused: BTreeMap<String, Vec<String>>,
     wrongly_accepted: BTreeMap<String, Vec<String>>,
+    /// Programs that compute another value than they should, of suites that have values.
+    wrong_values: BTreeMap<String, Vec<String>>,
+    /// How many rows of values are right.
+    rows: usize,
+    /// Cases by the reason for which nothing is asked of them.
+    left_out: BTreeMap<String, usize>,
+    /// Programs by the reason for which only their compilation is judged.
+    not_run: BTreeMap<String, usize>,
+    /// Programs by the reason for which they are accepted on purpose.
+    chosen: BTreeMap<String, usize>,
 }
 
 impl Table {
@@ -43,6 +53,32 @@ impl Table {
         }
     }
 
+    /// Counts a case of which nothing is asked.
+    pub fn leave_out(&mut self, reason: &str) {
+        *self.left_out.entry(reason.to_owned()).or_default() += 1;
+    }
+
+    /// Counts a program that is compiled and not run.
+    pub fn add_not_run(&mut self, reason: &str) {
+        *self.not_run.entry(reason.to_owned()).or_default() += 1;
+    }
+
+    /// Counts a program that should be refused, and is accepted for a reason.
+    pub fn add_choice(&mut self, reason: &str) {
+        self.programs += 1;
+        *self.chosen.entry(reason.to_owned()).or_default() += 1;
+    }
+
+    /// Counts rows of values that are right.
+    pub fn add_rows(&mut self, rows: usize) {
+        self.rows += rows;
+    }
+
+    pub fn add_wrong_value(&mut self, name: &str, message: &str) {
+        let group = name.rsplit_once('.').map_or(name, |(group, _)| group);
+        self.wrong_values.entry(group.to_owned()).or_default().push(format!("{name}: {message}"));
+    }
+
     /// How many there are.
     pub fn programs(&self) -> usize {
         self.programs
@@ -51,6 +87,7 @@ impl Table {
     /// Every program that is judged wrongly.
     pub fn listed(&self) -> String {
         let all = self.wrongly_refused.iter().chain(&self.wrongly_accepted);
+        let all = all.chain(&self.wrong_values);
         all.flat_map(|(cause, names)| names.iter().map(move |name| format!("{name}: {cause}\n")))
             .collect()
     }
@@ -62,15 +99,17 @@ impl Table {
         suite: &str,
         commit: &str,
     ) -> Result<Result<String, String>, CommandFailure> {
-        let found = [self.programs, count(&self.wrongly_refused), count(&self.wrongly_accepted)];
+        let wrong = [&self.wrongly_refused, &self.wrongly_accepted, &self.wrong_values];
+        let [refused, accepted, values] = wrong.map(count);
+        let found = [self.programs, refused, accepted, values];
         let Some((line, expected)) = expected_of(suite, commit)? else {
-            let [programs, refused, accepted] = found;
-            let line = format!("{suite} {commit} {programs} {refused} {accepted}");
+            let line = format!("{suite} {commit} {} {refused} {accepted} {values}", self.programs);
             return Ok(Ok(format!("expected.txt has no line for this commit: {line}")));
         };
-        let words = "programs, wrongly refused, wrongly accepted";
+        let words = "programs, wrongly refused, wrongly accepted, wrong values";
         let message = format!("{line}: {words}: {found:?}, but expected.txt has {expected:?}");
-        let is_worse = found[0] < expected[0] || found[1] > expected[1] || found[2] > expected[2];
+        let is_more = |at: usize| found[at] > expected[at];
+        let is_worse = found[0] < expected[0] || (1..4).any(is_more);
         Ok(match (found == expected, is_worse) {
             (true, _) => Ok(format!("{line}: as expected")),
             (false, true) => Err(message),
@@ -80,7 +119,7 @@ impl Table {
 }
 
 /// The line of a suite at a commit, with its counts. A folder of shaders is known by its commit alone.
-fn expected_of(suite: &str, commit: &str) -> Result<Option<(String, [usize; 3])>, CommandFailure> {
+fn expected_of(suite: &str, commit: &str) -> Result<Option<(String, [usize; 4])>, CommandFailure> {
     for line in EXPECTED.lines().filter(|line| !line.starts_with('#')) {
         let words: Vec<&str> = line.split_whitespace().collect();
         let [name, at, counts @ ..] = words.as_slice() else { continue };
@@ -92,10 +131,9 @@ fn expected_of(suite: &str, commit: &str) -> Result<Option<(String, [usize; 3])>
         if !is_it {
             continue;
         }
-        let wrong =
-            || CommandFailure::input(format!("expected.txt: `{line}` has not three counts"));
+        let wrong = || CommandFailure::input(format!("expected.txt: `{line}` has not four counts"));
         let counts: Vec<usize> = counts.iter().filter_map(|count| count.parse().ok()).collect();
-        let counts = <[usize; 3]>::try_from(counts).map_err(|_| wrong())?;
+        let counts = <[usize; 4]>::try_from(counts).map_err(|_| wrong())?;
         return Ok(Some(((*name).to_owned(), counts)));
     }
     Ok(None)
@@ -103,9 +141,27 @@ fn expected_of(suite: &str, commit: &str) -> Result<Option<(String, [usize; 3])>
 
 impl fmt::Display for Table {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { programs: _, accepted, refused, wrongly_refused, wrongly_accepted } = self;
+        let Self { programs: _, accepted, refused, rows, .. } = self;
         writeln!(to, "rightly accepted {accepted}, rightly refused {refused}")?;
-        let parts = [("wrongly refused", wrongly_refused), ("wrongly accepted", wrongly_accepted)];
+        if *rows > 0 {
+            writeln!(to, "rows of values that are right {rows}")?;
+        }
+        let counted = [
+            ("nothing asked", &self.left_out),
+            ("not run", &self.not_run),
+            ("accepted on purpose", &self.chosen),
+        ];
+        for (what, reasons) in counted.into_iter().filter(|(_, reasons)| !reasons.is_empty()) {
+            writeln!(to, "{what} {}", reasons.values().sum::<usize>())?;
+            for (reason, programs) in reasons {
+                writeln!(to, "{programs:6} {reason}")?;
+            }
+        }
+        let parts = [
+            ("wrongly refused", &self.wrongly_refused),
+            ("wrongly accepted", &self.wrongly_accepted),
+            ("wrong values", &self.wrong_values),
+        ];
         for (what, causes) in parts {
             writeln!(to, "{what} {}", count(causes))?;
             let mut causes: Vec<_> = causes.iter().collect();
@@ -124,7 +180,7 @@ fn count(causes: &BTreeMap<String, Vec<String>>) -> usize {
 }
 
 /// A message without the names and numbers of its text.
-fn general(message: &str) -> String {
+pub fn general(message: &str) -> String {
     let mut parts = message.split('`');
     let mut general = parts.next().unwrap_or_default().to_owned();
     while let (Some(_), rest) = (parts.next(), parts.next()) {
