@@ -189,7 +189,8 @@ impl Lexer<'_> {
             self.digits(u8::is_ascii_digit);
         }
         match (self.peek(0), self.peek(1)) {
-            (b'f' | b'F', _) => self.suffix(1, Kind::Float),
+            // `1f` is no number of GLSL: a float has a point or an exponent.
+            (b'f' | b'F', _) if float => self.suffix(1, Kind::Float),
             (b'l', b'f') | (b'L', b'F') => self.suffix(2, Kind::Double),
             _ if float => Kind::Float,
             _ => self.integer_suffix(),

@@ -106,7 +106,7 @@ impl<'a> Checker<'a> {
         members: &'a [ast::Member<'a>],
         at: At,
     ) -> Res<Type> {
-        let members = self.fields(members)?;
+        let members = self.fields(members, None)?;
         if members.is_empty() {
             return self.fail(at, "a structure has at least one member");
         }
@@ -135,10 +135,16 @@ impl<'a> Checker<'a> {
         (depth + 1, members.iter().map(|field| of(field).1).sum())
     }
 
-    fn fields(&mut self, members: &'a [ast::Member<'a>]) -> Res<Vec<Field>> {
+    /// The members of a structure, or of a block in this storage.
+    fn fields(
+        &mut self,
+        members: &'a [ast::Member<'a>],
+        block: Option<Storage>,
+    ) -> Res<Vec<Field>> {
         let mut fields: Vec<Field> = Vec::new();
         for member in members {
             let quals = self.quals(&member.quals)?;
+            self.check_member(member, &quals, block)?;
             let base = self.spec_type(&member.ty, NO_SIZES)?;
             for declarator in &member.names {
                 let ty = self.after_name(base.clone(), &declarator.sizes)?;
@@ -165,6 +171,26 @@ impl<'a> Checker<'a> {
             }
         }
         Ok(fields)
+    }
+
+    /// A member is stored as its block is, and declares nothing else.
+    fn check_member(
+        &mut self,
+        member: &'a ast::Member<'a>,
+        quals: &Quals,
+        block: Option<Storage>,
+    ) -> Res<()> {
+        let at = member.ty.at;
+        if quals.storage.is_some() && quals.storage != block {
+            return self.fail(at, "a member has no storage of its own");
+        }
+        if quals.packs {
+            return self.fail(at, "a member has no packing of its own: the whole block has one");
+        }
+        if block.is_some() && matches!(member.ty.base, Base::Struct(..)) {
+            return self.fail(at, "a structure is not declared in a block");
+        }
+        Ok(())
     }
 
     /// A type with the sizes that stand after a name: they are outside of those of the type.
@@ -246,6 +272,7 @@ impl<'a> Checker<'a> {
             return self.redeclare(quals, &ty, name);
         }
         let place = self.global_place(quals, &ty, name)?;
+        self.check_invariant(quals, place, name)?;
         let init = match &declarator.init {
             Some(init) => Some(self.initializer(init, &ty)?),
             None => None,
@@ -279,6 +306,16 @@ impl<'a> Checker<'a> {
         self.declare(name, Symbol::Var(index))
     }
 
+    /// What the host gives is the same for every shader anyway.
+    fn check_invariant(&mut self, quals: &Quals, place: Place, name: ast::Name<'a>) -> Res<()> {
+        let is_given = matches!(place, Place::Uniform | Place::UniformBlock)
+            || (place == Place::Input && self.shader.stage == Stage::Vertex);
+        match quals.interpolation.invariant && is_given {
+            true => self.fail(name.at, "`invariant` is for what a shader computes"),
+            false => Ok(()),
+        }
+    }
+
     /// `out float gl_FragDepth;` and its siblings.
     fn redeclare(&mut self, quals: &Quals, ty: &Type, name: ast::Name<'a>) -> Res<()> {
         let Some(index) = self.builtin_index(name.text, name.at)? else {
@@ -309,7 +346,8 @@ impl<'a> Checker<'a> {
         }
         self.check_name(block.name)?;
         self.check_block_name(place, block.name)?;
-        let members = self.fields(&block.members)?;
+        self.check_invariant(&quals, place, block.name)?;
+        let members = self.fields(&block.members, quals.storage)?;
         if members.is_empty() {
             return self.fail(block.name.at, "a block has at least one member");
         }
@@ -331,6 +369,7 @@ impl<'a> Checker<'a> {
         self.var_mut(index).open = block.instance.is_none();
         self.shader.order.push(Item::Struct(content));
         self.shader.order.push(Item::Var(index));
+        self.blocks.insert(block.name.text);
         match block.instance {
             Some(_) => self.declare(name, Symbol::Var(index)),
             None => block.members.iter().flat_map(|member| &member.names).enumerate().try_for_each(
@@ -339,8 +378,11 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Two blocks of one kind have two names.
+    /// Two blocks of one kind have two names, and nothing else has them.
     fn check_block_name(&mut self, place: Place, name: ast::Name<'a>) -> Res<()> {
+        if self.scopes[0].contains_key(name.text) {
+            return self.fail(name.at, format!("`{}` is declared already", name.text));
+        }
         let is_same = |var: &Var| {
             let Type::Struct(content) = *var.ty.innermost() else { return false };
             let content = &self.shader.structs[content as usize];

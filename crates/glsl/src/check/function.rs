@@ -4,6 +4,7 @@ use super::decl::NO_SIZES;
 use super::layout::Storage;
 use super::{Checker, Res, Symbol};
 use crate::ast;
+use crate::builtin::functions::find_function;
 use crate::tree::{Dir, Function, Item, Place, Stmt, StmtKind};
 use crate::types::Type;
 
@@ -123,6 +124,14 @@ impl<'a> Checker<'a> {
             }
         }
         self.check_name(name)?;
+        if self.blocks.contains(name.text) {
+            return self.fail(name.at, format!("there is a block `{}` already", name.text));
+        }
+        let is_new = !self.version.es || self.version.number < 300;
+        if !is_new && find_function(name.text).is_some() {
+            let message = format!("`{}` is a function of GLSL ES", name.text);
+            return self.fail(name.at, message);
+        }
         let index = self.shader.functions.len() as u32;
         self.shader.functions.push(Function {
             name: name.text.to_owned(),

@@ -33,6 +33,8 @@ pub(super) struct Quals {
     pub local_ids: [Option<u32>; 3],
     pub early_tests: bool,
     pub depth: Option<String>,
+    /// `std140` and what else is for a block as a whole.
+    pub packs: bool,
     pub offset: Option<u32>,
     pub align: Option<u32>,
 }
@@ -91,6 +93,22 @@ const IGNORED: &[&str] = &[
     "buffer_reference_align",
 ];
 
+/// The words that are for a block as a whole.
+const PACKING: [&str; 5] = ["std140", "std430", "scalar", "shared", "packed"];
+
+/// The place of a word in the order of qualifiers, if it has one.
+fn rank_of(word: &str) -> Option<u32> {
+    Some(match word {
+        "invariant" => 0,
+        "smooth" | "flat" | "noperspective" => 1,
+        "const" => 2,
+        "centroid" => 3,
+        "in" | "out" | "inout" | "uniform" | "attribute" | "varying" | "buffer" | "shared" => 4,
+        "highp" | "mediump" | "lowp" => 5,
+        _ => return None,
+    })
+}
+
 impl<'a> Checker<'a> {
     pub(super) fn quals(&mut self, list: &'a [Qual<'a>]) -> Res<Quals> {
         let mut quals = Quals::default();
@@ -101,6 +119,7 @@ impl<'a> Checker<'a> {
                     return self.fail(name.at, format!("`{}` stands twice", name.text));
                 }
                 Qual::Word(name) => {
+                    self.check_order(words.last().copied(), *name)?;
                     words.push(name.text);
                     self.qual_word(&mut quals, *name)?;
                 }
@@ -112,6 +131,19 @@ impl<'a> Checker<'a> {
             }
         }
         Ok(quals)
+    }
+
+    /// GLSL ES 1.00 and 3.00 want qualifiers in one order.
+    fn check_order(&mut self, before: Option<&str>, name: ast::Name<'a>) -> Res<()> {
+        if !self.version.es || self.version.number > 300 {
+            return Ok(());
+        }
+        match (before.and_then(rank_of), rank_of(name.text)) {
+            (Some(before), Some(rank)) if before > rank => {
+                self.fail(name.at, format!("`{}` stands before the words before it", name.text))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn qual_word(&mut self, quals: &mut Quals, name: ast::Name<'a>) -> Res<()> {
@@ -201,6 +233,7 @@ impl<'a> Checker<'a> {
     }
 
     fn layout_word(&mut self, quals: &mut Quals, name: ast::Name<'a>, has_value: bool) -> Res<()> {
+        quals.packs |= PACKING.contains(&name.text);
         let layout = &mut quals.layout;
         match name.text {
             _ if IGNORED.contains(&name.text) => {

@@ -88,6 +88,8 @@ pub(crate) struct Checker<'a> {
     early_tests: Option<At>,
     /// How packing and matrices lie in blocks, as `layout(...) uniform;` sets it.
     packing: [Layout; 2],
+    /// The names of blocks, which nothing else has at the same place.
+    blocks: FxHashSet<&'a str>,
     /// How many loops and switches are around.
     loops: u32,
     switches: u32,
@@ -122,6 +124,7 @@ impl<'a> Checker<'a> {
             discards: false,
             early_tests: None,
             packing: [Layout::default(), Layout::default()],
+            blocks: FxHashSet::default(),
             loops: 0,
             switches: 0,
             problems: Vec::new(),
@@ -173,6 +176,9 @@ impl<'a> Checker<'a> {
         self.check_name(name)?;
         if name.text.len() > 1000 {
             return self.fail(name.at, "the name is longer than 1000 bytes");
+        }
+        if self.scopes.len() == 1 && self.blocks.contains(name.text) {
+            return self.fail(name.at, format!("there is a block `{}` already", name.text));
         }
         let Some(scope) = self.scopes.last_mut() else { return Ok(()) };
         if scope.contains_key(name.text) {

@@ -30,6 +30,7 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn unary(&mut self, text: &str, operand: Expr, at: At) -> Res<Expr> {
+        self.check_reserved(text == "~", text, at)?;
         let scalar = operand.ty.scalar();
         let is_matrix = matches!(operand.ty, Type::Matrix(..));
         let op = match (text, scalar) {
@@ -70,8 +71,19 @@ impl<'a> Checker<'a> {
         self.fail(value.at, format!("a condition is `bool`, and this is `{name}`"))
     }
 
+    /// Operators of whole numbers that GLSL ES 1.00 reserves.
+    fn check_reserved(&mut self, is_integer: bool, text: &str, at: At) -> Res<()> {
+        match is_integer && self.version.es && self.version.number < 300 {
+            true => self.fail(at, format!("`{text}` is reserved in GLSL ES 1.00")),
+            false => Ok(()),
+        }
+    }
+
     /// A binary operator other than `&&` and `||`.
     pub(super) fn binary(&mut self, op: Op, left: Expr, right: Expr, at: At) -> Res<Expr> {
+        use Op::{And, Mod, Or, ShiftLeft, ShiftRight, Xor};
+        let is_integer = matches!(op, And | Mod | Or | ShiftLeft | ShiftRight | Xor);
+        self.check_reserved(is_integer, op.text(), at)?;
         match op {
             Op::Equal | Op::NotEqual => self.equality(op, left, right, at),
             Op::Less | Op::Greater | Op::LessEqual | Op::GreaterEqual => {

@@ -59,10 +59,159 @@ const SINCE_400: &[&str] = &[
 /// Keywords of GLSL 4.20, and reserved words of GLSL ES 3.00.
 const SINCE_420: &[&str] = &["atomic_uint", "resource"];
 
-/// Whether a version keeps a word for itself. Words that the grammar needs are no names anyway.
+/// Keywords of every version, and words that the first versions reserve.
+const KEYWORDS: &[&str] = &[
+    "attribute",
+    "bool",
+    "break",
+    "bvec2",
+    "bvec3",
+    "bvec4",
+    "const",
+    "continue",
+    "default",
+    "discard",
+    "do",
+    "else",
+    "false",
+    "float",
+    "for",
+    "if",
+    "in",
+    "inout",
+    "int",
+    "invariant",
+    "ivec2",
+    "ivec3",
+    "ivec4",
+    "mat2",
+    "mat3",
+    "mat4",
+    "out",
+    "return",
+    "sampler1D",
+    "sampler1DShadow",
+    "sampler2D",
+    "sampler2DRect",
+    "sampler2DRectShadow",
+    "sampler2DShadow",
+    "sampler3D",
+    "sampler3DRect",
+    "samplerCube",
+    "struct",
+    "switch",
+    "true",
+    "uniform",
+    "varying",
+    "vec2",
+    "vec3",
+    "vec4",
+    "void",
+    "volatile",
+    "while",
+];
+
+/// Keywords since GLSL 1.30, and reserved by GLSL ES 1.00 already.
+const SINCE_130: &[&str] = &["flat", "highp", "lowp", "mediump", "precision"];
+
+/// Keywords of GLSL 1.40 and of GLSL ES 3.00, or reserved by these.
+const MODERN: &[&str] = &[
+    "case",
+    "centroid",
+    "isampler1D",
+    "isampler1DArray",
+    "isampler2D",
+    "isampler2DArray",
+    "isampler2DRect",
+    "isampler3D",
+    "isamplerBuffer",
+    "isamplerCube",
+    "layout",
+    "mat2x2",
+    "mat2x3",
+    "mat2x4",
+    "mat3x2",
+    "mat3x3",
+    "mat3x4",
+    "mat4x2",
+    "mat4x3",
+    "mat4x4",
+    "noperspective",
+    "sampler1DArray",
+    "sampler1DArrayShadow",
+    "sampler2DArray",
+    "sampler2DArrayShadow",
+    "samplerBuffer",
+    "samplerCubeShadow",
+    "smooth",
+    "uint",
+    "usampler1D",
+    "usampler1DArray",
+    "usampler2D",
+    "usampler2DArray",
+    "usampler2DRect",
+    "usampler3D",
+    "usamplerBuffer",
+    "usamplerCube",
+    "uvec2",
+    "uvec3",
+    "uvec4",
+];
+
+/// Keywords of GLSL 4.20 that begin with a letter for the kind of their numbers, or with none.
+const IMAGES: &[&str] =
+    &["image1D", "image1DArray", "image2D", "image2DArray", "image3D", "imageBuffer", "imageCube"];
+
+/// The same of GLSL 3.20 and 1.50.
+const SAMPLES: &[&str] = &["sampler2DMS", "sampler2DMSArray"];
+
+/// How accesses to memory are qualified, since GLSL 4.20.
+const ACCESSES: &[&str] = &["coherent", "readonly", "restrict", "writeonly"];
+
+/// Whether a version keeps a word for itself: no declaration may have it as its name.
 pub(super) fn is_reserved(word: &str, version: Version) -> bool {
     let since = |desktop: u32| if version.es { 300 } else { desktop };
-    let lists =
-        [(ALWAYS, 0), (SINCE_140, since(140)), (SINCE_400, since(400)), (SINCE_420, since(420))];
-    lists.iter().any(|(words, number)| version.number >= *number && words.contains(&word))
+    let lists = [
+        (ALWAYS, 0),
+        (KEYWORDS, 0),
+        (SINCE_130, if version.es { 100 } else { 130 }),
+        (MODERN, since(140)),
+        (SINCE_140, since(140)),
+        (SINCE_400, since(400)),
+        (SINCE_420, since(420)),
+        (ACCESSES, since(420)),
+    ];
+    // What GLSL ES 3.00 takes from GLSL 4.00, version 1.00 has too.
+    let is_double = version.es && SINCE_400.contains(&word) && word.starts_with('d');
+    let of_numbers = [(IMAGES, since(420)), (SAMPLES, since(150))];
+    let stem = word.strip_prefix(['i', 'u']);
+    is_double
+        || lists.iter().any(|(words, number)| version.number >= *number && words.contains(&word))
+        || of_numbers.iter().any(|(words, number)| {
+            let is_one = words.contains(&word) || stem.is_some_and(|stem| words.contains(&stem));
+            version.number >= *number && is_one
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Version, is_reserved};
+
+    #[test]
+    fn words_of_versions() {
+        let version = |number, es| Version { number, es, converts: false };
+        for word in ["bool", "while", "input", "sampler3D"] {
+            assert!(is_reserved(word, version(110, false)), "{word}");
+            assert!(is_reserved(word, version(100, true)), "{word}");
+        }
+        for word in ["uimage2D", "isampler2DMS", "uint", "coherent", "smooth"] {
+            assert!(is_reserved(word, version(300, true)), "{word}");
+            assert!(is_reserved(word, version(450, false)), "{word}");
+            assert!(!is_reserved(word, version(120, false)), "{word}");
+        }
+        assert!(is_reserved("double", version(100, true)));
+        assert!(!is_reserved("double", version(330, false)));
+        assert!(!is_reserved("image2D", version(330, false)));
+        assert!(!is_reserved("colour", version(460, false)));
+    }
 }

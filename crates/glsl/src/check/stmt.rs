@@ -213,7 +213,14 @@ impl<'a> Checker<'a> {
                 None => return self.fail(at, "a `switch` begins with a label"),
             }
         }
-        Ok(cases)
+        match (cases.last(), list.last()) {
+            (Some(case), Some(last))
+                if case.body.is_empty() && matches!(last.kind, Ast::Case(_)) =>
+            {
+                self.fail(last.at, "a label has statements behind it")
+            }
+            _ => Ok(cases),
+        }
     }
 
     fn label(&mut self, value: &'a ast::Expr<'a>, ty: &Type) -> Res<Number> {

@@ -78,6 +78,7 @@ impl<'a> Parser<'a, '_> {
             return Ok(Item::Vars(Vars { quals, ty, names: Vec::new() }));
         }
         if self.token().kind == Kind::Word && self.ahead(1).kind == mark("(") {
+            self.result_quals(&quals)?;
             return self.function(ty);
         }
         let mut names = vec![self.declarator()?];
@@ -86,6 +87,19 @@ impl<'a> Parser<'a, '_> {
         }
         self.expect(";")?;
         Ok(Item::Vars(Vars { quals, ty, names }))
+    }
+
+    /// A result has a precision, and no place.
+    fn result_quals(&mut self, quals: &[Qual<'a>]) -> Res<()> {
+        const FIT: [&str; 6] = ["const", "highp", "lowp", "mediump", "precise", "subroutine"];
+        let word = quals.iter().find_map(|qual| match qual {
+            Qual::Word(name) if !FIT.contains(&name.text) => Some(*name),
+            Qual::Word(_) | Qual::Layout(_) => None,
+        });
+        match word {
+            Some(name) => self.fail(name.at, format!("a result is not `{}`", name.text)),
+            None => Ok(()),
+        }
     }
 
     fn qualified_names(&mut self, quals: Vec<Qual<'a>>) -> Res<Item<'a>> {
@@ -115,6 +129,10 @@ impl<'a> Parser<'a, '_> {
 
     fn layout(&mut self) -> Res<Qual<'a>> {
         let mut list = Vec::new();
+        if self.is(")") {
+            let at = self.token().at;
+            return self.fail(at, "a layout has at least one word".to_owned());
+        }
         while !self.take(")") {
             let name = self.name()?;
             let value = if self.take("=") { Some(self.assignment()?) } else { None };
