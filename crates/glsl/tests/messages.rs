@@ -12,6 +12,7 @@ pub fn tests() -> Vec<Trial> {
         Trial::test("glsl::names_become_reserved", names_become_reserved),
         Trial::test("glsl::mistakes_are_reported_once", reported_once),
         Trial::test("glsl::parser_goes_on", parser_goes_on),
+        Trial::test("glsl::rules_of_es", rules_of_es),
     ]
 }
 
@@ -58,6 +59,9 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     ("highp highp float a = 1.0;", "highp", "`highp` stands twice"),
     ("const uniform float a;", "uniform", "`uniform` contradicts a word before it"),
     ("uint a = 4294967296u;", "4294967296u", "`4294967296` is not an integer of 32 bits"),
+    ("float while = 1.0;", "while", "`while` is a reserved word of GLSL"),
+    ("float a = 1f;", "f", "expected `;`, found `f`"),
+    ("switch (1) { case 0: break; default: }", "default:", "a label has statements behind it"),
     ("for (int i = 0; i < 3; i++) { float i = 1.0; }", "i", "`i` is declared twice in this scope"),
     ("for (int i = 0; i < 3; i++) { { float i = 1.0; } } i;", "i", "`i` is not declared"),
     ("while (bool go = true) { int go = 1; }", "go", "`go` is declared twice in this scope"),
@@ -66,6 +70,34 @@ const MISTAKES: &[(&str, &str, &str)] = &[
 /// Names that were free before a version of the language took them.
 const FREE: &[(&str, &str)] =
     &[("#version 120", "filter"), ("#version 330", "sample"), ("#version 410", "resource")];
+
+/// What a version of GLSL ES refuses and the other languages accept; the version, the text, the message.
+const OF_ES: &[(&str, &str, &str)] = &[
+    ("100", "void main() { int a = 5 % 2; }", "`%` is reserved in GLSL ES 1.00"),
+    ("100", "void main() { int a = ~5; }", "`~` is reserved in GLSL ES 1.00"),
+    ("100", "void main() { float packed = 1.0; }", "`packed` is a reserved word of GLSL"),
+    ("300 es", "highp in vec4 a; void main() { }", "`in` stands before the words before it"),
+    (
+        "300 es",
+        "float sin(float a) { return a; } void main() { }",
+        "`sin` is a function of GLSL ES",
+    ),
+    ("300 es", "invariant in vec4 a; void main() { }", "`invariant` is for what a shader computes"),
+];
+
+fn rules_of_es() -> Result<(), Failed> {
+    for (version, body, message) in OF_ES {
+        for (version, is_refused) in [(*version, true), ("450", false)] {
+            let text = format!("#version {version}\n{body}\n");
+            let found = translate(&text, Stage::Fragment, SourceId(0), Default::default());
+            let first = found.err().map(|problems| problems[0].message.clone());
+            if first.as_deref() != is_refused.then_some(*message) {
+                return Err(format!("{version}: {body}: {first:?}").into());
+            }
+        }
+    }
+    Ok(())
+}
 
 fn names_become_reserved() -> Result<(), Failed> {
     for (version, name) in FREE {
@@ -117,6 +149,54 @@ fn reported_once() -> Result<(), Failed> {
 
 /// Whole texts of a stage that have no translation; the place, and the message.
 const REFUSED: &[(Stage, &str, &str, &str)] = &[
+    (
+        Stage::Fragment,
+        "in float f(vec3 a) { return a.x; } void main() { }",
+        "in",
+        "a result is not `in`",
+    ),
+    (
+        Stage::Fragment,
+        "layout() uniform B { vec4 a; }; void main() { }",
+        ")",
+        "a layout has at least one word",
+    ),
+    (
+        Stage::Fragment,
+        "uniform B { in vec4 a; }; void main() { }",
+        "vec4",
+        "a member has no storage of its own",
+    ),
+    (
+        Stage::Fragment,
+        "uniform B { layout(std140) vec4 a; }; void main() { }",
+        "vec4",
+        "a member has no packing of its own: the whole block has one",
+    ),
+    (
+        Stage::Fragment,
+        "uniform B { struct S { vec4 a; } s; }; void main() { }",
+        "struct S { vec4 a; }",
+        "a structure is not declared in a block",
+    ),
+    (
+        Stage::Fragment,
+        "uniform B { vec4 a; } B; void main() { }",
+        "B",
+        "there is a block `B` already",
+    ),
+    (
+        Stage::Fragment,
+        "float B(float a) { return a; } uniform B { vec4 a; } b; void main() { }",
+        "B",
+        "`B` is declared already",
+    ),
+    (
+        Stage::Vertex,
+        "invariant in vec4 a; void main() { gl_Position = a; }",
+        "a",
+        "`invariant` is for what a shader computes",
+    ),
     (
         Stage::Fragment,
         "layout(binding = 0) uniform B { vec4 a; } x; layout(binding = 1) uniform B { vec4 b; } y; \

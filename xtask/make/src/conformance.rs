@@ -7,6 +7,7 @@ mod deqp;
 mod folder;
 mod glsl;
 mod table;
+mod targets;
 mod wesl;
 
 use std::path::{Path, PathBuf};
@@ -67,10 +68,10 @@ impl Suite {
 
 /// Runs the suites in some folders. With `--verbose`, it also prints each difference.
 pub fn run(arguments: &[String]) -> CommandResult {
-    if let Some(("glsl", rest)) =
-        arguments.split_first().map(|(first, rest)| (first.as_str(), rest))
-    {
-        return glsl::run(rest);
+    match arguments.split_first().map(|(first, rest)| (first.as_str(), rest)) {
+        Some(("glsl", rest)) => return glsl::run(rest),
+        Some(("targets", rest)) => return targets::run(rest),
+        _ => {}
     }
     let (flags, folders): (Vec<&String>, Vec<&String>) =
         arguments.iter().partition(|argument| argument.starts_with("--"));

@@ -244,8 +244,9 @@ impl<'g, 's> Expander<'g, 's> {
             MacroMeaning::Setting(setting) => (self.reads.symbol(setting), setting),
             MacroMeaning::Number(symbol) => (symbol, NO_SETTING),
             MacroMeaning::Line => {
-                let line = self.modules()[token.module as usize].line(token.start) as i64
-                    + self.line_shift;
+                // In the body of a macro, it is the line in which the call ends.
+                let at = if token.expanded { token.end.saturating_sub(1) } else { token.start };
+                let line = self.modules()[token.module as usize].line(at) as i64 + self.line_shift;
                 (self.table.spellings.intern(&line.to_string()), NO_SETTING)
             }
             MacroMeaning::File | MacroMeaning::Signed | MacroMeaning::User { .. } => {

@@ -292,8 +292,8 @@ impl<'g> PreprocessorState<'g, '_> {
                 self.expander.table.spellings.text(token.symbol).parse::<u32>().ok().map(i64::from)
             })
             .collect();
-        let (Some([line, file @ ..]), Some(frame)) = (numbers.as_deref(), self.open.last_mut())
-        else {
+        let numbers = numbers.as_deref().filter(|numbers| numbers.len() <= 2);
+        let (Some([line, file @ ..]), Some(frame)) = (numbers, self.open.last_mut()) else {
             let error = Diagnostic::error(codes::MALFORMED_DIRECTIVE, "`#line` needs a number");
             self.expander
                 .errors

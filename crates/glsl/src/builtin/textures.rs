@@ -135,6 +135,7 @@ pub fn forms_of(access: Access, opaque: &Opaque) -> Vec<Form> {
     let fits = match access {
         Access::Load | Access::Store | Access::ImageSize => opaque.kind == Image,
         Access::Subpass => opaque.kind == Subpass,
+        Access::Sample { lod: Lod::Fetch, .. } if opaque.shadow => false,
         Access::Sample { lod: Lod::Fetch, .. } | Access::Size | Access::Levels => {
             matches!(opaque.kind, Combined | Texture)
         }

@@ -184,6 +184,10 @@ impl<'a> Checker<'a> {
         if quals.storage.is_some() && quals.storage != block {
             return self.fail(at, "a member has no storage of its own");
         }
+        let is_shared = matches!(block, Some(Storage::Uniform | Storage::Buffer));
+        if quals.interpolation.invariant && is_shared {
+            return self.fail(at, "`invariant` is for what a shader computes");
+        }
         if quals.packs {
             return self.fail(at, "a member has no packing of its own: the whole block has one");
         }
@@ -308,8 +312,10 @@ impl<'a> Checker<'a> {
 
     /// What the host gives is the same for every shader anyway.
     fn check_invariant(&mut self, quals: &Quals, place: Place, name: ast::Name<'a>) -> Res<()> {
+        // Inputs of a fragment are computed by the vertex stage; since GLSL ES 3.00, it says so alone.
+        let is_modern = self.version.es && self.version.number >= 300;
         let is_given = matches!(place, Place::Uniform | Place::UniformBlock)
-            || (place == Place::Input && self.shader.stage == Stage::Vertex);
+            || (place == Place::Input && (is_modern || self.shader.stage == Stage::Vertex));
         match quals.interpolation.invariant && is_given {
             true => self.fail(name.at, "`invariant` is for what a shader computes"),
             false => Ok(()),

@@ -123,15 +123,7 @@ impl<'a> Checker<'a> {
                 return Ok(*index);
             }
         }
-        self.check_name(name)?;
-        if self.blocks.contains(name.text) {
-            return self.fail(name.at, format!("there is a block `{}` already", name.text));
-        }
-        let is_new = !self.version.es || self.version.number < 300;
-        if !is_new && find_function(name.text).is_some() {
-            let message = format!("`{}` is a function of GLSL ES", name.text);
-            return self.fail(name.at, message);
-        }
+        self.check_function_name(name)?;
         let index = self.shader.functions.len() as u32;
         self.shader.functions.push(Function {
             name: name.text.to_owned(),
@@ -148,6 +140,19 @@ impl<'a> Checker<'a> {
         list.push(index);
         self.scopes[0].insert(name.text, Symbol::Functions(list));
         Ok(index)
+    }
+
+    /// A name of a new function. GLSL ES keeps the names of its own functions since version 3.00.
+    fn check_function_name(&mut self, name: ast::Name<'a>) -> Res<()> {
+        self.check_name(name)?;
+        if self.blocks.contains(name.text) {
+            return self.fail(name.at, format!("there is a block `{}` already", name.text));
+        }
+        let is_kept = self.version.es && self.version.number >= 300;
+        match is_kept && find_function(name.text).is_some() {
+            true => self.fail(name.at, format!("`{}` is a function of GLSL ES", name.text)),
+            false => Ok(()),
+        }
     }
 
     fn signature(&self, params: &[u32]) -> Vec<(Type, Place)> {

@@ -183,9 +183,12 @@ pub(super) fn is_reserved(word: &str, version: Version) -> bool {
     ];
     // What GLSL ES 3.00 takes from GLSL 4.00, version 1.00 has too.
     let is_double = version.es && SINCE_400.contains(&word) && word.starts_with('d');
+    // A word of layouts since version 1.40.
+    let is_packed = word == "packed" && version.number < if version.es { 300 } else { 140 };
     let of_numbers = [(IMAGES, since(420)), (SAMPLES, since(150))];
     let stem = word.strip_prefix(['i', 'u']);
     is_double
+        || is_packed
         || lists.iter().any(|(words, number)| version.number >= *number && words.contains(&word))
         || of_numbers.iter().any(|(words, number)| {
             let is_one = words.contains(&word) || stem.is_some_and(|stem| words.contains(&stem));

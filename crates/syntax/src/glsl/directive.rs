@@ -123,6 +123,11 @@ fn read_directive(
         return Ok(Directive::Empty);
     }
     let line = DirectiveTokens { module, start: start + 1, end, symbols };
+    // A text behind these is an error, and they still end a branch: the rest would be unbalanced.
+    if let Some(extra) = line.extra_of_branch() {
+        module.errors.push(extra);
+    }
+    let line = DirectiveTokens { module, start: start + 1, end, symbols };
     let condition = start as u32 + 1..end as u32;
     match line.module.tokens[start].symbol {
         known::INCLUDE => {
@@ -187,6 +192,20 @@ impl DirectiveTokens<'_> {
             self.module.source,
             tokens[first].start as usize..tokens[self.end - 1].end as usize,
         )
+    }
+
+    /// A text behind `#else` or `#endif`.
+    fn extra_of_branch(&self) -> Option<Diagnostic> {
+        let directive = match self.module.tokens[self.start - 1].symbol {
+            known::ELSE => "else",
+            known::ENDIF => "endif",
+            _ => return None,
+        };
+        let extra = self.token(0)?;
+        let message = format!("unexpected text after `#{directive}`");
+        let error = Diagnostic::error(codes::MALFORMED_DIRECTIVE, message);
+        let error = error.at(self.span_of(extra), "not part of the directive");
+        Some(error.note("help: put it behind `//`"))
     }
 
     fn malformed(&self, message: String, label: &str) -> Diagnostic {
@@ -364,7 +383,9 @@ impl DirectiveTokens<'_> {
         let number = self.token(0).and_then(|token| self.symbols.text(token.symbol).parse().ok());
         let profile = self.token(1).map(|token| self.symbols.text(token.symbol));
         match (number, profile, self.token(2)) {
-            (Some(number), None | Some("core" | "compatibility" | "es"), None) => {
+            (Some(number), None | Some("core" | "compatibility" | "es"), None)
+                if is_version(number, profile == Some("es")) =>
+            {
                 Ok(Directive::Version {
                     number,
                     es: profile == Some("es") || number == 100,
@@ -372,7 +393,7 @@ impl DirectiveTokens<'_> {
                 })
             }
             _ => Err(self.malformed(
-                "`#version` needs a number and at most a profile".into(),
+                "`#version` needs a number that GLSL has, and at most a profile".into(),
                 "expected for example `450` or `300 es`",
             )),
         }
@@ -384,6 +405,11 @@ impl DirectiveTokens<'_> {
             .map(|token| self.symbols.text(token.symbol))
             .collect();
         match (self.token(0), words.as_slice()) {
+            // All extensions together can only be warned of, or be off.
+            (Some(_), ["all", ":", "require" | "enable"]) => Err(self.malformed(
+                "`#extension all` is `warn` or `disable`".into(),
+                "name the extensions that the shader needs",
+            )),
             (Some(name), [_, ":", "require" | "enable" | "warn" | "disable"])
                 if name.kind == TokenKind::Identifier =>
             {
@@ -393,6 +419,17 @@ impl DirectiveTokens<'_> {
                 "`#extension` needs a name and a behaviour".into(),
                 "expected `NAME : require`, `enable`, `warn` or `disable`",
             )),
+        }
+    }
+}
+
+/// Whether GLSL, or GLSL ES, has a version of this number.
+fn is_version(number: u32, es: bool) -> bool {
+    match es {
+        true => [300, 310, 320].contains(&number),
+        false => {
+            let desktop = [110, 120, 130, 140, 150, 330, 400, 410, 420, 430, 440, 450, 460];
+            number == 100 || desktop.contains(&number)
         }
     }
 }

@@ -139,7 +139,7 @@ fn accepted_by_glslang(shaders: &Shaders) -> Option<&'static str> {
 }
 
 /// Runs a command with a text as its standard input.
-fn output_of(mut command: Command, text: &str) -> Option<Output> {
+pub fn output_of(mut command: Command, text: &str) -> Option<Output> {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
     let mut running = command.spawn().ok()?;
     // A command that ends before it has read all has its verdict already.

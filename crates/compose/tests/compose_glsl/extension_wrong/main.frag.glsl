@@ -9,3 +9,5 @@
 #
 # /* nothing either */
 void main() {}
+#extension all : require
+#extension all : warn

@@ -2,3 +2,4 @@
 #line
 #line x
 void main() {}
+#line 1 2 3

@@ -80,8 +80,12 @@ fn specialised(text: &str, stage: Stage, case: &Case) -> String {
         ("${POSITION_FRAG_COLOR}", position),
         ("${FRAG_PRECISION}", "highp"),
     ];
-    // The lines of `#version` must be the first.
+    // A `#version` must be in the first line. A text for OpenGL ES 2 without it is of version 1.00.
     let mut made = text.trim_start().to_owned();
+    let has_place = !["#version", "__LINE__"].iter().any(|word| text.contains(word));
+    if case.name.starts_with("data.gles2.") && has_place {
+        made.insert_str(0, "#version 100\n");
+    }
     for (place, content) in places {
         made = made.replace(place, content);
     }
