@@ -2,6 +2,7 @@
 //! beside what is expected there. Nothing of a suite is in the repository; `CONTRIBUTING.md` says
 //! where they come from.
 
+mod bevy;
 mod cts;
 mod deqp;
 mod folder;
@@ -42,6 +43,8 @@ enum Suite {
     Wesl,
     /// dEQP's shader library.
     Deqp,
+    /// The shaders of Bevy's crates.
+    Bevy,
     /// Shaders in WGSL, of which Tint says whether they are valid.
     Folder,
 }
@@ -52,6 +55,7 @@ impl Suite {
             () if folder.join("src/webgpu/shader/validation").is_dir() => Self::Cts,
             () if folder.join(wesl::CASES).is_dir() => Self::Wesl,
             () if folder.join(deqp::FOLDERS[0]).is_dir() => Self::Deqp,
+            () if folder.join(bevy::CRATES).is_dir() => Self::Bevy,
             () => Self::Folder,
         }
     }
@@ -61,6 +65,7 @@ impl Suite {
             Self::Cts => "cts",
             Self::Wesl => "wesl",
             Self::Deqp => "deqp",
+            Self::Bevy => "bevy",
             Self::Folder => "folder",
         }
     }
@@ -91,6 +96,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
             Suite::Cts => tabulate(&cts::programs(&folder)?),
             Suite::Wesl => wesl::tabulate(&folder)?,
             Suite::Deqp => deqp::tabulate(&folder)?,
+            Suite::Bevy => bevy::tabulate(&folder)?,
             Suite::Folder => tabulate(&folder::programs(&folder)?),
         };
         println!("{}: {}", folder.display(), table.programs());
