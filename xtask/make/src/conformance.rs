@@ -7,6 +7,7 @@ mod cts;
 mod deqp;
 mod folder;
 mod glsl;
+mod outputs;
 mod table;
 mod targets;
 mod wesl;
@@ -71,7 +72,7 @@ impl Suite {
     }
 }
 
-/// Runs the suites in some folders. With `--verbose`, it also prints each difference.
+/// Runs the suites in some folders.
 pub fn run(arguments: &[String]) -> CommandResult {
     match arguments.split_first().map(|(first, rest)| (first.as_str(), rest)) {
         Some(("glsl", rest)) => return glsl::run(rest),
@@ -80,39 +81,95 @@ pub fn run(arguments: &[String]) -> CommandResult {
     }
     let (flags, folders): (Vec<&String>, Vec<&String>) =
         arguments.iter().partition(|argument| argument.starts_with("--"));
-    if let Some(unknown) = flags.iter().find(|flag| *flag.as_str() != *"--verbose") {
-        return Err(CommandFailure::usage(format!("`{unknown}` is not known")));
+    let mut options = RunOptions::default();
+    for flag in flags {
+        match flag.as_str() {
+            "--verbose" => options.verbose = true,
+            "--outputs" => options.outputs = true,
+            _ => return Err(CommandFailure::usage(format!("`{flag}` is not known"))),
+        }
     }
     if folders.is_empty() {
-        return Err(CommandFailure::usage(
-            "cargo xtask conformance [--verbose] DIR... | glsl [-I DIR]... DIR...",
-        ));
+        return Err(CommandFailure::usage(USAGE));
     }
     let mut differences = Vec::new();
     for folder in folders {
         let folder = PathBuf::from(folder);
         let suite = Suite::of(&folder);
-        let table = match suite {
-            Suite::Cts => tabulate(&cts::programs(&folder)?),
-            Suite::Wesl => wesl::tabulate(&folder)?,
-            Suite::Deqp => deqp::tabulate(&folder)?,
-            Suite::Bevy => bevy::tabulate(&folder)?,
-            Suite::Folder => tabulate(&folder::programs(&folder)?),
-        };
-        println!("{}: {}", folder.display(), table.programs());
-        print!("{table}");
-        if !flags.is_empty() {
-            print!("{}", table.listed());
-        }
-        match table.compare(suite.name(), &commit_of(&folder))? {
-            Ok(note) => println!("{note}"),
-            Err(worse) => differences.push(worse),
+        match options.outputs {
+            true => differences.extend(judge_outputs(&suite, &folder)?.err()),
+            false => differences.extend(judge_programs(&suite, &folder, options)?.err()),
         }
     }
     match differences.is_empty() {
         true => Ok(()),
         false => Err(CommandFailure::check(differences.join("\n"))),
     }
+}
+
+const USAGE: &str = "\
+cargo xtask conformance [--verbose] DIR...
+cargo xtask conformance --outputs DIR...
+cargo xtask conformance targets [--record] DIR...
+cargo xtask conformance glsl [-I DIR]... DIR...";
+
+#[derive(Debug, Clone, Copy, Default)]
+struct RunOptions {
+    /// Whether each difference is printed.
+    verbose: bool,
+    /// Whether validators are asked about outputs, in the place of what is accepted.
+    outputs: bool,
+}
+
+/// What is accepted and refused of a suite.
+fn judge_programs(
+    suite: &Suite,
+    folder: &Path,
+    options: RunOptions,
+) -> Result<table::Comparison, CommandFailure> {
+    let table = match suite {
+        Suite::Cts => tabulate(&cts::programs(folder)?),
+        Suite::Wesl => wesl::tabulate(folder)?,
+        Suite::Deqp => deqp::tabulate(folder)?,
+        Suite::Bevy => bevy::tabulate(folder)?,
+        Suite::Folder => tabulate(&folder::programs(folder)?),
+    };
+    println!("{}: {}", folder.display(), table.programs());
+    print!("{table}");
+    if options.verbose {
+        print!("{}", table.listed());
+    }
+    let comparison = table.compare(suite.name(), &commit_of(folder))?;
+    if let Ok(note) = &comparison {
+        println!("{note}");
+    }
+    Ok(comparison)
+}
+
+/// What validators say of the outputs of a suite's valid programs.
+fn judge_outputs(suite: &Suite, folder: &Path) -> Result<table::Comparison, CommandFailure> {
+    let name = match suite {
+        Suite::Folder => folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        _ => suite.name().to_owned(),
+    };
+    let table = match suite {
+        Suite::Cts => outputs::tabulate(&name, &cts::programs(folder)?)?,
+        Suite::Folder => outputs::tabulate(&name, &folder::programs(folder)?)?,
+        Suite::Deqp => outputs::judge_units(&name, deqp::units_of_valid(folder)?)?,
+        Suite::Wesl | Suite::Bevy => {
+            let message = format!("`{}` has modules, and no programs", folder.display());
+            return Err(CommandFailure::usage(message));
+        }
+    };
+    print!("{}: {table}", folder.display());
+    let words = "outputs, refused by validators";
+    let counts = [table.outputs, table.refused()];
+    let line = format!("{}{name}", table::OUTPUTS);
+    let comparison = table::compare_counts(&line, &commit_of(folder), words, &counts)?;
+    if let Ok(note) = &comparison {
+        println!("{note}");
+    }
+    Ok(comparison)
 }
 
 /// The commit of a checkout; `-` where there is none.

@@ -10,7 +10,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use lamplight::bundle::{Language, Stage, Target};
+use lamplight::bundle::{Language, Stage, Target, Unit};
 use lamplight::compose::{self, Composed, Keep, Options};
 use lamplight::diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight::glsl::number_program;
@@ -19,9 +19,9 @@ use lamplight::permute::Settings;
 use lamplight::resolve::{self, Packages};
 use lamplight::source::SourceSet;
 
-use super::Program;
 use super::folder::files_below;
 use super::table::{Table, general};
+use super::{Program, in_parallel};
 use parse::{Case, Expect, parse_cases};
 use stage::{Shaders, shaders_of};
 use xtask::CommandFailure;
@@ -52,8 +52,31 @@ enum Verdict {
 pub fn tabulate(checkout: &Path) -> Result<Table, CommandFailure> {
     let mut table = Table::default();
     let cases = read_cases(checkout, &mut table)?;
+    let programs = programs_of(&cases, &mut table);
+    let verdicts = in_parallel(&programs, THREADS, |(case, shaders)| judge(case, shaders));
+    for ((case, shaders), verdict) in programs.iter().zip(verdicts) {
+        add_verdict(&mut table, case, shaders, verdict);
+    }
+    Ok(table)
+}
+
+/// The outputs of the programs that must compile, with their names.
+pub fn units_of_valid(checkout: &Path) -> Result<Vec<(String, Vec<Unit>)>, CommandFailure> {
+    let mut table = Table::default();
+    let cases = read_cases(checkout, &mut table)?;
+    let mut programs = programs_of(&cases, &mut table);
+    programs.retain(|(case, _)| case.expect != Expect::CompileFail);
+    let units = in_parallel(&programs, THREADS, |(_, shaders)| {
+        let units = compiled_stages(shaders).unwrap_or_default();
+        units.into_iter().map(|made| made.unit).collect::<Vec<Unit>>()
+    });
+    let names = programs.iter().map(|(case, shaders)| name_of(case, shaders));
+    Ok(names.zip(units).collect())
+}
+
+fn programs_of<'c>(cases: &'c [Case], table: &mut Table) -> Vec<(&'c Case, Shaders)> {
     let mut programs = Vec::new();
-    for case in &cases {
+    for case in cases {
         if case.expect == Expect::LinkFail {
             table.leave_out("stages that do not fit together: links are the driver's");
             continue;
@@ -63,15 +86,12 @@ pub fn tabulate(checkout: &Path) -> Result<Table, CommandFailure> {
             Err(reason) => table.leave_out(reason),
         }
     }
-    let size = programs.len().div_ceil(THREADS * 64).max(1);
-    let parts: Vec<_> = programs.chunks(size).collect();
-    let judged = super::in_parallel(&parts, THREADS, |part| {
-        part.iter().map(|(case, shaders)| judge(case, shaders)).collect::<Vec<_>>()
-    });
-    for ((case, shaders), verdict) in programs.iter().zip(judged.into_iter().flatten()) {
-        add_verdict(&mut table, case, shaders, verdict);
-    }
-    Ok(table)
+    programs
+}
+
+fn name_of(case: &Case, shaders: &Shaders) -> String {
+    let stages: Vec<&str> = shaders.stages.iter().map(|(stage, _)| stage.suffix()).collect();
+    format!("{}:{}", case.name, stages.join("+"))
 }
 
 fn read_cases(checkout: &Path, table: &mut Table) -> Result<Vec<Case>, CommandFailure> {
@@ -97,8 +117,7 @@ fn read_cases(checkout: &Path, table: &mut Table) -> Result<Vec<Case>, CommandFa
 }
 
 fn add_verdict(table: &mut Table, case: &Case, shaders: &Shaders, verdict: Verdict) {
-    let stages: Vec<&str> = shaders.stages.iter().map(|(stage, _)| stage.suffix()).collect();
-    let name = format!("{}:{}", case.name, stages.join("+"));
+    let name = name_of(case, shaders);
     let expected = case.expect != Expect::CompileFail;
     let program = Program { name: name.clone(), text: String::new(), expected };
     let refusal = match verdict {
@@ -148,19 +167,10 @@ pub fn output_of(mut command: Command, text: &str) -> Option<Output> {
 }
 
 fn judge(case: &Case, shaders: &Shaders) -> Verdict {
-    let numbers = match shaders.stages.as_slice() {
-        [(Stage::Vertex, vertex), (Stage::Fragment, fragment)] => {
-            number_program(&[vertex], &[fragment]).map(Some)
-        }
-        _ => [None, None],
+    let units = match compiled_stages(shaders) {
+        Ok(units) => units,
+        Err(error) => return Verdict::Refused(error),
     };
-    let mut units = Vec::new();
-    for ((stage, text), numbers) in shaders.stages.iter().zip(numbers) {
-        match compiled(text, *stage, numbers.as_deref().unwrap_or_default()) {
-            Ok(unit) => units.push(unit),
-            Err(error) => return Verdict::Refused(error),
-        }
-    }
     match case.expect {
         Expect::Pass if !case.values.is_empty() => match values::run(case, &units) {
             Ok(rows) => Verdict::Right(rows),
@@ -169,6 +179,19 @@ fn judge(case: &Case, shaders: &Shaders) -> Verdict {
         },
         _ => Verdict::Right(0),
     }
+}
+
+/// Compiles the stages, numbered together.
+fn compiled_stages(shaders: &Shaders) -> Result<Vec<CompiledUnit>, Diagnostic> {
+    let numbers = match shaders.stages.as_slice() {
+        [(Stage::Vertex, vertex), (Stage::Fragment, fragment)] => {
+            number_program(&[vertex], &[fragment]).map(Some)
+        }
+        _ => [None, None],
+    };
+    let stages = shaders.stages.iter().zip(&numbers);
+    let numbered = |numbers: &Option<String>| numbers.clone().unwrap_or_default();
+    stages.map(|((stage, text), found)| compiled(text, *stage, &numbered(found))).collect()
 }
 
 /// Compiles a text for every target that has what it needs. The error is the author's, or what the last

@@ -9,7 +9,8 @@ use super::Program;
 use xtask::CommandFailure;
 
 /// One line for each suite: its name, its commit or `any`, the count of programs, of those wrongly
-/// refused, of those wrongly accepted, and of those with wrong values. A comment begins with `#`.
+/// refused, of those wrongly accepted, and of those with wrong values. Lines that begin with `outputs:`
+/// have the count of outputs and of those that validators refuse. A comment begins with `#`.
 const EXPECTED: &str = include_str!("expected.txt");
 
 /// How many causes are printed.
@@ -92,49 +93,67 @@ impl Table {
             .collect()
     }
 
-    /// Compares with what is expected of a suite at a commit: the error is a count that is worse, and
-    /// the text is for the reader.
-    pub fn compare(
-        &self,
-        suite: &str,
-        commit: &str,
-    ) -> Result<Result<String, String>, CommandFailure> {
+    /// Compares with what is expected of a suite at a commit.
+    pub fn compare(&self, suite: &str, commit: &str) -> Result<Comparison, CommandFailure> {
         let wrong = [&self.wrongly_refused, &self.wrongly_accepted, &self.wrong_values];
         let [refused, accepted, values] = wrong.map(count);
-        let found = [self.programs, refused, accepted, values];
-        let Some((line, expected)) = expected_of(suite, commit)? else {
-            let line = format!("{suite} {commit} {} {refused} {accepted} {values}", self.programs);
-            return Ok(Ok(format!("expected.txt has no line for this commit: {line}")));
-        };
         let words = "programs, wrongly refused, wrongly accepted, wrong values";
-        let message = format!("{line}: {words}: {found:?}, but expected.txt has {expected:?}");
-        let is_more = |at: usize| found[at] > expected[at];
-        let is_worse = found[0] < expected[0] || (1..4).any(is_more);
-        Ok(match (found == expected, is_worse) {
-            (true, _) => Ok(format!("{line}: as expected")),
-            (false, true) => Err(message),
-            (false, false) => Ok(format!("{message}: update it")),
-        })
+        let found = [self.programs, refused, accepted, values];
+        compare_counts(suite, commit, words, &found)
     }
 }
 
-/// The line of a suite at a commit, with its counts. A folder of shaders is known by its commit alone.
-fn expected_of(suite: &str, commit: &str) -> Result<Option<(String, [usize; 4])>, CommandFailure> {
+/// The text for the reader, or the counts that are worse than expected.
+pub type Comparison = Result<String, String>;
+
+/// Compares counts with a line of `expected.txt`: the first should not be less, the others not more.
+pub fn compare_counts(
+    suite: &str,
+    commit: &str,
+    words: &str,
+    found: &[usize],
+) -> Result<Comparison, CommandFailure> {
+    let Some((line, expected)) = expected_of(suite, commit)? else {
+        let counts: Vec<String> = found.iter().map(usize::to_string).collect();
+        let line = format!("{suite} {commit} {}", counts.join(" "));
+        return Ok(Ok(format!("expected.txt has no line for this commit: {line}")));
+    };
+    if expected.len() != found.len() {
+        let message = format!("expected.txt: `{line}` needs {} counts: {words}", found.len());
+        return Err(CommandFailure::input(message));
+    }
+    let message = format!("{line}: {words}: {found:?}, but expected.txt has {expected:?}");
+    let is_more = |at: usize| found[at] > expected[at];
+    let is_worse = found[0] < expected[0] || (1..found.len()).any(is_more);
+    Ok(match (found == expected, is_worse) {
+        (true, _) => Ok(format!("{line}: as expected")),
+        (false, true) => Err(message),
+        (false, false) => Ok(format!("{message}: update it")),
+    })
+}
+
+/// How the names begin that lines about outputs have.
+pub const OUTPUTS: &str = "outputs:";
+
+/// The line of a suite at a commit, with its counts. A folder of shaders, and the outputs of any suite,
+/// are known by their commits alone.
+fn expected_of(suite: &str, commit: &str) -> Result<Option<(String, Vec<usize>)>, CommandFailure> {
     for line in EXPECTED.lines().filter(|line| !line.starts_with('#')) {
         let words: Vec<&str> = line.split_whitespace().collect();
         let [name, at, counts @ ..] = words.as_slice() else { continue };
-        let is_commit = commit.starts_with(at);
-        let is_it = match suite {
-            "folder" => is_commit,
-            _ => *name == suite && (*at == "any" || is_commit),
+        let is_commit = *at == "any" || commit.starts_with(at);
+        let is_of_outputs = name.starts_with(OUTPUTS) == suite.starts_with(OUTPUTS);
+        let is_named = match suite {
+            "folder" => *at != "any",
+            _ => suite == *name,
         };
-        if !is_it {
+        if !(is_commit && is_of_outputs && is_named) {
             continue;
         }
-        let wrong = || CommandFailure::input(format!("expected.txt: `{line}` has not four counts"));
-        let counts: Vec<usize> = counts.iter().filter_map(|count| count.parse().ok()).collect();
-        let counts = <[usize; 4]>::try_from(counts).map_err(|_| wrong())?;
-        return Ok(Some(((*name).to_owned(), counts)));
+        let counts: Result<Vec<usize>, _> = counts.iter().map(|count| count.parse()).collect();
+        let wrong =
+            |_| CommandFailure::input(format!("expected.txt: `{line}` is no line of counts"));
+        return Ok(Some(((*name).to_owned(), counts.map_err(wrong)?)));
     }
     Ok(None)
 }
