@@ -12,7 +12,7 @@ use naga::{
     TypeInner, VectorSize,
 };
 
-use super::{columns, depths, immediates, strides, targets};
+use super::{columns, depths, immediates, located, strides, targets};
 use lamplight_bundle::{Language, Target};
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
@@ -215,6 +215,9 @@ pub fn check_lacks(
     if wanted.contains(&Target::HLSL) {
         for span in columns::taken_from_values(module, &validated.info) {
             refuse(format!("target `hlsl`: {}", columns::TAKEN), span, "it is taken here");
+        }
+        for span in located::lost_gaps(module) {
+            refuse(format!("target `hlsl`: {}", located::LOCATED), span, "the buffer");
         }
         if counts_groups(module) {
             refuse(

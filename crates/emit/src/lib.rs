@@ -26,6 +26,7 @@ mod invariants;
 mod isolate;
 mod lacks;
 mod lists;
+mod located;
 mod names;
 mod nesting;
 mod packed;

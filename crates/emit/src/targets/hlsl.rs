@@ -19,7 +19,7 @@ use crate::reflect::{binding_kind, entry_inputs};
 use crate::slots::{Numbering, UsedBinding, assign_slots, native_reflection};
 use crate::text::BoundedText;
 use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, setters, zeros};
-use crate::{columns, lacks, lists, rename, rows};
+use crate::{columns, lacks, lists, located, rename, rows};
 use lamplight_bundle::{BindingKind, HeapSampler, Native, Place, SamplerHeap, Semantic, Target};
 
 /// The target, for the table of all.
@@ -94,6 +94,9 @@ fn is_taken(name: &str) -> bool {
 fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     if columns::taken_from_values(source.module, source.info).next().is_some() {
         return Err(columns::TAKEN.to_owned());
+    }
+    if !located::lost_gaps(source.module).is_empty() {
+        return Err(located::LOCATED.to_owned());
     }
     if lacks::counts_groups(source.module) {
         return Err(lacks::GROUP_COUNT.to_owned());

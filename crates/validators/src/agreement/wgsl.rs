@@ -65,14 +65,23 @@ fn interface_differences(
     let unnamed = |varyings: &[Varying]| -> Vec<Varying> {
         varyings
             .iter()
-            .map(|one| Varying { name: None, ty: String::new(), ..one.clone() })
+            .map(|one| Varying {
+                name: None,
+                ty: String::new(),
+                sampling: written_sampling(one),
+                ..one.clone()
+            })
             .collect()
     };
     let reflected = described.reflection;
     differences.same("the inputs are", &unnamed(&found.inputs), &unnamed(&reflected.inputs));
     differences.same("the outputs are", &unnamed(&found.outputs), &unnamed(&reflected.outputs));
     differences.same("the pairs are", &found.pairs, &reflected.pairs);
-    for (found, reflected) in found.bindings.iter().zip(&reflected.bindings) {
+    for reflected in &reflected.bindings {
+        let place = (reflected.group, reflected.binding);
+        let mut same = found.bindings.iter().filter(|one| (one.group, one.binding) == place);
+        // `compare_reading` notes what one of both does not have.
+        let Some(found) = same.next() else { continue };
         let what = format!("the texture `{}` is", reflected.name);
         differences.same(&what, &found.texture, &reflected.texture);
         differences.same(
@@ -87,6 +96,12 @@ fn interface_differences(
         );
     }
     Ok(differences.0)
+}
+
+/// Where a varying is sampled. The centre need not be written.
+fn written_sampling(varying: &Varying) -> Option<String> {
+    let is_default = varying.interpolation.as_deref().is_some_and(|name| name != "flat");
+    varying.sampling.clone().or_else(|| is_default.then(|| "center".to_owned()))
 }
 
 fn read_module(module: &Module, info: &ModuleInfo) -> Result<Reading, String> {
