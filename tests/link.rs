@@ -30,7 +30,7 @@ use texts::{NAMES, NAMES_MANIFEST, ROWS, ROWS_MANIFEST, TRAPS, TRAPS_MANIFEST};
 use writers::{
     blocks_beside_structures, entry_points, kept_matrices, kept_names, lacking,
     matrices_from_values, matrices_of_two_rows, returned_arrays, types_like_members,
-    variables_named_after_structures,
+    variables_named_after_structures, written_textures,
 };
 
 type Outcome = Result<(), Failed>;
@@ -40,7 +40,7 @@ type Case = (&'static str, fn() -> Outcome);
 const STEP: usize = 23;
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 23] = [
+    let cases: [Case; 24] = [
         ("marks_are_found_in_longer_names", parts::marks_are_found_in_longer_names),
         ("sets_hold_what_was_put_in", parts::sets_hold_what_was_put_in),
         ("a_fragment_is_written_with_other_names", parts::a_fragment_is_written_with_other_names),
@@ -67,6 +67,7 @@ pub fn tests() -> Vec<Trial> {
         ("arrays_of_matrices_are_kept", kept_matrices),
         ("arrays_of_matrices_from_values", matrices_from_values),
         ("functions_that_return_arrays", returned_arrays),
+        ("textures_that_functions_write", written_textures),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("link::{name}"), case)).collect()
 }

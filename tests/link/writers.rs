@@ -220,6 +220,22 @@ pub fn lacking() -> Outcome {
     Ok(())
 }
 
+/// The reflection says that a texture is written, whichever function writes to it.
+pub fn written_textures() -> Outcome {
+    let text = "
+@group(0) @binding(0) var stored: texture_storage_2d<rgba8unorm, write>;
+fn put(at: vec2i) -> vec4f { textureStore(stored, at, vec4f(1.0)); return vec4f(); }
+@fragment fn fs_main() -> @location(0) vec4f { return put(vec2i()); }
+";
+    let made = accepted(text, r#"targets = ["spirv", "glsl450", "hlsl", "msl", "wgsl"]"#)?;
+    for (_, unit) in units(&made) {
+        if !unit.reflection.bindings.iter().all(|binding| binding.writable) {
+            return Err(format!("{:?}", unit.reflection.bindings).into());
+        }
+    }
+    Ok(())
+}
+
 /// naga calls the block of a uniform that is no structure `type_block_0Fragment`, also where the
 /// author has a structure of that name. The validators must accept the outputs.
 pub fn blocks_beside_structures() -> Outcome {

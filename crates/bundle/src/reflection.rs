@@ -118,7 +118,7 @@ pub struct Binding {
     /// smallest size of a binding.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<u32>,
-    /// Whether the shader writes to it, or declares a buffer as `read_write`.
+    /// Whether the shader writes to it, or declares it as a buffer or a texture that may be written.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub writable: bool,
     /// The type of a buffer that is no struct, as numbers.

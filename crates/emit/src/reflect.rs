@@ -187,17 +187,29 @@ fn make_binding(
         ty: type_name(module, variable.ty),
         count: binding_count(module, variable.ty),
         size: is_buffer.then(|| layouter[element].size),
-        writable: usage.contains(GlobalUse::WRITE) || is_declared_writable(variable),
+        writable: usage.contains(GlobalUse::WRITE) || is_declared_writable(module, variable),
         shape: if is_buffer { shape_of(module, element) } else { None },
         texture: texture_shape(module, element, is_filtered),
         members: if is_buffer { struct_members(module, element, layouter) } else { Vec::new() },
     })
 }
 
-/// Whether a buffer is declared as one that may be written. Layouts of WebGPU need that, whatever the
-/// entry point does with it.
-fn is_declared_writable(variable: &GlobalVariable) -> bool {
-    matches!(variable.space, AddressSpace::Storage { access } if access.contains(StorageAccess::STORE))
+/// Whether a buffer or a storage texture is declared as one that may be written. Layouts of WebGPU need
+/// that, whatever the entry point does with it.
+fn is_declared_writable(module: &Module, variable: &GlobalVariable) -> bool {
+    let access = match (variable.space, &module.types[element_type(module, variable.ty)].inner) {
+        (AddressSpace::Storage { access }, _) => access,
+        (
+            _,
+            TypeInner::Image {
+                class: ImageClass::Storage { access, format: _ },
+                dim: _,
+                arrayed: _,
+            },
+        ) => *access,
+        _ => return false,
+    };
+    access.contains(StorageAccess::STORE)
 }
 
 /// The type of what is bound, of one element where it is an array of bindings.
