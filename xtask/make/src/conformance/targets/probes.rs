@@ -234,6 +234,12 @@ const KNOWN: &[Known] = &[
         probe: None,
     },
     Known {
+        part: "a structure with locations has gaps",
+        kind: Kind::Ours,
+        note: "naga writes no padding into such a structure",
+        probe: None,
+    },
+    Known {
         part: "depth texture",
         kind: Kind::Ours,
         note: "naga declares each depth texture as one for comparisons",
