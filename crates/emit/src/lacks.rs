@@ -213,11 +213,8 @@ pub fn check_lacks(
         }
     }
     if wanted.contains(&Target::HLSL) {
-        for span in columns::taken_from_values(module, &validated.info) {
-            refuse(format!("target `hlsl`: {}", columns::TAKEN), span, "it is taken here");
-        }
-        for span in located::lost_gaps(module) {
-            refuse(format!("target `hlsl`: {}", located::LOCATED), span, "the buffer");
+        for (reason, span, label) in lost_in_hlsl(validated) {
+            refuse(format!("target `hlsl`: {reason}"), span, label);
         }
         if counts_groups(module) {
             refuse(
@@ -240,6 +237,17 @@ fn lacking_immediates(module: &Module, wanted: &[Target]) -> Vec<(String, Span)>
     let Some((reason, span)) = immediates::lack(module) else { return Vec::new() };
     let entries = targets::ALL.iter().filter(|one| !one.immediates && wanted.contains(&one.target));
     entries.map(|entry| (format!("target `{}`: {reason}", entry.target), span)).collect()
+}
+
+/// What naga's HLSL would lay or read otherwise, with the words at its place.
+fn lost_in_hlsl(validated: &Validated) -> Vec<(&'static str, Span, &'static str)> {
+    let module = &validated.module;
+    let taken = columns::taken_from_values(module, &validated.info);
+    let gaps = located::lost_gaps(module).into_iter();
+    taken
+        .map(|span| (columns::TAKEN, span, "it is taken here"))
+        .chain(gaps.map(|span| (located::LOCATED, span, "the buffer")))
+        .collect()
 }
 
 /// naga writes the index of the workgroup in its place.
