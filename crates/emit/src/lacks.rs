@@ -191,16 +191,8 @@ pub fn check_lacks(
         let error = Diagnostic::error(codes::EMIT_FAILED, message);
         found.push(place.into_iter().fold(error, |error, span| error.at(span, label)));
     };
-    let entries = targets::ALL.iter().filter(|entry| wanted.contains(&entry.target));
-    let floats = depths::as_floats(module).ok().flatten();
-    let in_glsl = floats.as_ref().map_or(module, |(module, _)| module);
-    for (target, version) in entries.filter_map(|entry| Some((entry.target, entry.glsl?))) {
-        for (what, span) in lacking_features(in_glsl, version) {
-            refuse(lack_message(target, what), span, "it is written so");
-        }
-        for span in two_rows(module) {
-            refuse(format!("target `{target}`: {TWO_ROWS}"), span, "it is in here");
-        }
+    for (message, span, label) in lacking_in_glsl(module, wanted) {
+        refuse(message, span, label);
     }
     for (message, span) in lacking_immediates(module, wanted) {
         refuse(message, span, "these immediates");
@@ -230,6 +222,27 @@ pub fn check_lacks(
         }
     }
     if found.is_empty() { Ok(()) } else { Err(found) }
+}
+
+/// What versions of GLSL lack, with labels of the places.
+fn lacking_in_glsl(module: &Module, wanted: &[Target]) -> Vec<(String, Span, &'static str)> {
+    let entries = targets::ALL.iter().filter(|entry| wanted.contains(&entry.target));
+    let versions: Vec<_> = entries.filter_map(|entry| Some((entry.target, entry.glsl?))).collect();
+    if versions.is_empty() {
+        return Vec::new();
+    }
+    let floats = depths::as_floats(module).ok().flatten();
+    let in_glsl = floats.as_ref().map_or(module, |(module, _)| module);
+    let mut found = Vec::new();
+    for (target, version) in versions {
+        let lacking = lacking_features(in_glsl, version);
+        found.extend(
+            lacking.map(|(what, span)| (lack_message(target, what), span, "it is written so")),
+        );
+        let message = format!("target `{target}`: {TWO_ROWS}");
+        found.extend(two_rows(module).map(|span| (message.clone(), span, "it is in here")));
+    }
+    found
 }
 
 /// Immediates that are no uniform buffer, for the targets that have one in their place.
