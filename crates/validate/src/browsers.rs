@@ -51,7 +51,7 @@ fn telling(rule: Rule) -> Telling {
         Rule::Barrier => Telling {
             code: codes::NON_UNIFORM_BARRIER,
             label: "other invocations of the workgroup may not get here",
-            help: Some("help: do this where all invocations of the workgroup get"),
+            help: Some("help: do this where all invocations of the workgroup come by"),
         },
         Rule::Subgroup => Telling {
             code: codes::NON_UNIFORM_BARRIER,
@@ -111,7 +111,7 @@ fn written_help(text: &str, problem: &Problem) -> Option<String> {
             Some(format!("help: write `let value = {text};` before the branch and `value` here"))
         }
         Rule::Barrier if text.ends_with(')') => Some(format!(
-            "help: end the branch with `}}` before it, and write `{text};` behind that"
+            "help: end the branch with `}}` before it, and write `{text};` after that"
         )),
         Rule::Precedence => bracketed(text, problem.message.split('`').nth(1)?)
             .map(|text| format!("help: write `{text}`")),

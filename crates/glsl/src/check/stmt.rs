@@ -217,7 +217,7 @@ impl<'a> Checker<'a> {
             (Some(case), Some(last))
                 if case.body.is_empty() && matches!(last.kind, Ast::Case(_)) =>
             {
-                self.fail(last.at, "a label has statements behind it")
+                self.fail(last.at, "a label has statements after it")
             }
             _ => Ok(cases),
         }

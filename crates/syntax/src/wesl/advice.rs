@@ -80,7 +80,7 @@ fn missing_semicolon(tokens: Tokens<'_>, at: usize, error: Diagnostic) -> Diagno
     error.message = "`;` is missing".to_owned();
     error.labels.clear();
     let line = line_until(tokens, last);
-    error.at(tokens.span(last), "behind this").note(format!("help: write `{line};`"))
+    error.at(tokens.span(last), "after this").note(format!("help: write `{line};`"))
 }
 
 /// What stands where a declaration of the module begins.
@@ -165,8 +165,10 @@ fn typed_name(tokens: Tokens<'_>, at: usize, error: Diagnostic) -> Diagnostic {
             error.note(format!("help: write `{of_type}: {}`", native_type(name)))
         }
         _ => error.note(format!(
-            "help: names come before their types: write `{name}: {}`",
-            native_type(of_type)
+            "help: names come before their types: write `{name}: {}{}`",
+            native_type(of_type),
+            // Members end with a comma.
+            if tokens.text(at + 1) == ";" { "," } else { "" }
         )),
     }
 }

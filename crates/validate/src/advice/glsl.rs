@@ -330,7 +330,7 @@ fn semicolon(text: &str, at: &Range<usize>, mistake: &mut Mistake) {
     let end = start + code.len();
     let last = crate::hints::last_word(code).len().max(1);
     mistake.message = "`;` is missing".to_owned();
-    mistake.labels = vec![(end.saturating_sub(last)..end, "behind this".to_owned())];
+    mistake.labels = vec![(end.saturating_sub(last)..end, "after this".to_owned())];
     mistake.write(format!("{};", code.trim_start()));
 }
 

@@ -116,7 +116,7 @@ pub fn reserved(_: &Source<'_>, name: &str, mistake: &mut Mistake) {
 }
 
 pub fn prefixed(_: &Source<'_>, name: &str, mistake: &mut Mistake) {
-    mistake.message = format!("`{name}` begins with two underscores, as no name does");
+    mistake.message = format!("`{name}` begins with two underscores, which names must not");
     mistake.help(format!("take another name, such as `{}`", name.trim_start_matches('_')));
 }
 
@@ -237,7 +237,7 @@ pub fn note_unknown(text: &str, name: &str, at: usize) -> Option<String> {
             )
         }
         false => {
-            format!("help: it is declared behind this: move `{} {name} = {value};` up", one.keyword)
+            format!("help: it is declared below: move `{} {name} = {value};` up", one.keyword)
         }
     })
 }

@@ -76,7 +76,7 @@ fn template_argument(mistake: &mut Mistake) {
     mistake.labels.iter_mut().for_each(|(_, label)| *label = "without a type".to_owned());
     match name.as_str() {
         vector if vector.starts_with("vec") || vector.starts_with("mat") => {
-            mistake.help(format!("write `{name}f` for `{name}<f32>`, `{name}i` for integers"))
+            mistake.help(format!("write `{name}f` for floats, `{name}i` for integers"))
         }
         "array" => mistake.write("array<f32, 4>"),
         "ptr" => mistake.write("ptr<function, f32>"),

@@ -22,7 +22,7 @@ pub fn expected(source: &Source<'_>, wanted: &str, mistake: &mut Mistake) {
     match (wanted, found.as_str()) {
         ("{", "=") => mistake.help("`=` assigns: write `==` to compare"),
         ("{", ":") => mistake.help("write `->` before the type of the result"),
-        (",", ";") => mistake.help("members end with `,`"),
+        (",", ";") => mistake.help("members end with `,`: write it for each `;`"),
         (";", "[") => array(line, mistake),
         (";", "(") if line.contains('.') => method(source, &at, line, mistake),
         (";", name) if is_word(name) && line.ends_with(')') && !is_next_line => {
@@ -48,7 +48,7 @@ fn missing_semicolon(source: &Source<'_>, before: &str, at: &Range<usize>, mista
     let end = line_start + code.len();
     let last = last_word(code).len().max(1);
     mistake.message = "`;` is missing".to_owned();
-    mistake.labels = vec![(end.saturating_sub(last)..end, "behind this".to_owned())];
+    mistake.labels = vec![(end.saturating_sub(last)..end, "after this".to_owned())];
     mistake.write(format!("{};", code.trim_start()));
 }
 
@@ -56,10 +56,12 @@ fn operators(found: &str, line: &str, mistake: &mut Mistake) -> bool {
     match found {
         "++" | "--" => {
             let name = last_word(line);
-            let message = format!("`{found}` is a statement of its own, behind a variable");
+            let message = format!("`{found}` is a statement of its own, without a value");
             mistake.message = message;
             match is_word(name) && !line.trim_end().ends_with(';') && !name.is_empty() {
-                true => mistake.help(format!("write `{name}{found};` behind this statement")),
+                true => mistake.help(format!(
+                    "write `{name}` here, and `{name}{found};` as the next statement"
+                )),
                 false => mistake.help(format!("write `i{found};`")),
             }
         }

@@ -287,12 +287,18 @@ fn call_words(
     let called = &module.functions[handle];
     let name = called.name.as_deref().unwrap_or("the function");
     let sentence = match error {
-        CallError::ArgumentCount { required, seen } => Sentence::coded(
-            codes::CALL_MISMATCH,
-            format!("`{name}` takes {required} arguments, not {seen}"),
-        ),
+        CallError::ArgumentCount { required, seen } => {
+            let message = format!("`{name}` takes {required} arguments, not {seen}");
+            let sentence = Sentence::coded(codes::CALL_MISMATCH, message);
+            match called.arguments.get(*seen) {
+                Some(missing) => {
+                    sentence.note(format!("help: `{}` is missing", parameter_text(module, missing)))
+                }
+                None => sentence,
+            }
+        }
         CallError::ArgumentType { index, required, seen_expression } => {
-            argument_words(module, of, name, *index, *required, *seen_expression)
+            argument_words(module, of, called, *index, *required, *seen_expression)
         }
         CallError::Argument { source, .. } => {
             return expression::expression_words(module, of, source);
@@ -309,13 +315,17 @@ fn call_words(
 fn argument_words(
     module: &Module,
     of: &Function,
-    name: &str,
+    called: &Function,
     at: usize,
     required: Handle<naga::Type>,
     seen: Handle<Expression>,
 ) -> Sentence {
+    let name = called.name.as_deref().unwrap_or("the function");
     let expected = type_text(module, required);
     let found = value_type(module, of, seen);
+    let is_found =
+        |one: &&naga::FunctionArgument| Some(type_text(module, one.ty).replace('`', "")) == found;
+    let other = called.arguments.iter().find(is_found);
     let seen = found
         .as_ref()
         .map_or_else(|| "has another type".to_owned(), |found| format!("is `{found}`"));
@@ -323,25 +333,30 @@ fn argument_words(
         codes::CALL_MISMATCH,
         format!("argument {} of `{name}` is {expected}, and this {seen}", at + 1),
     );
-    match found {
-        Some(found) => {
+    match (found, other) {
+        (_, Some(other)) => {
+            let other = parameter_text(module, other);
+            sentence.note(format!(
+                "help: the argument fits `{other}`: mind the order of the parameters"
+            ))
+        }
+        (Some(found), None) => {
             sentence.about(Wrong::Argument { at, found, expected: expected.replace('`', "") })
         }
-        None => sentence,
+        (None, None) => sentence,
     }
+}
+
+fn parameter_text(module: &Module, parameter: &naga::FunctionArgument) -> String {
+    let name = parameter.name.as_deref().unwrap_or("_");
+    format!("{name}: {}", type_text(module, parameter.ty).replace('`', ""))
 }
 
 /// A function as its callers see it.
 fn signature_text(module: &Module, of: &Function) -> String {
     let plain = |handle| type_text(module, handle).replace('`', "");
-    let arguments: Vec<String> = of
-        .arguments
-        .iter()
-        .map(|argument| {
-            let name = argument.name.as_deref().unwrap_or("_");
-            format!("{name}: {}", plain(argument.ty))
-        })
-        .collect();
+    let arguments: Vec<String> =
+        of.arguments.iter().map(|argument| parameter_text(module, argument)).collect();
     let result =
         of.result.as_ref().map_or(String::new(), |result| format!(" -> {}", plain(result.ty)));
     format!("`{}({}){result}`", of.name.as_deref().unwrap_or_default(), arguments.join(", "))
