@@ -24,6 +24,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use crate::is_whole;
 use crate::random::Random;
 use lamplight::bundle::Target;
 use lamplight::execute::on_thread;
@@ -32,8 +33,8 @@ use program::Program;
 use run::{Ran, Runnable, Runner};
 use same::{Finding, Output, Verdict};
 
-/// How many programs the tests make.
-const PROGRAMS: u64 = 200;
+/// How many programs the tests make, and those of the night.
+const PROGRAMS: [u64; 2] = [100, 200];
 /// The seed of the first program.
 const SEED: u64 = 1;
 /// The external validators are given every 20th program.
@@ -66,7 +67,7 @@ fn number(name: &str, usual: u64) -> Result<u64, Failed> {
 }
 
 fn random_programs() -> Result<(), Failed> {
-    let programs = number("LAMPLIGHT_LINK_PROGRAMS", PROGRAMS)?;
+    let programs = number("LAMPLIGHT_LINK_PROGRAMS", PROGRAMS[usize::from(is_whole())])?;
     let seed = number("LAMPLIGHT_LINK_SEED", SEED)?;
     if std::env::var_os("LAMPLIGHT_LINK_PRINT").is_some() {
         let program = program(seed);
@@ -90,7 +91,7 @@ fn random_programs() -> Result<(), Failed> {
                 report_finding(kind, found, how.runner.as_ref())?;
             }
         }
-        if programs > PROGRAMS {
+        if programs > PROGRAMS[1] {
             tally.progress(programs, started.elapsed());
         }
     }

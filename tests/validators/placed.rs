@@ -92,8 +92,11 @@ pub fn glsl_means_something_else() -> Outcome {
     let depth = "@group(1) @binding(0) var depths: texture_depth_2d;
 @group(1) @binding(1) var smp: sampler;
 @group(1) @binding(2) var map: texture_2d<f32>;
+@group(1) @binding(3) var compare: sampler_comparison;
 ";
-    let plain = fragment("vec4f(textureSampleLevel(depths, smp, at.xy, 0))") + depth;
+    let both = "textureSampleLevel(depths, smp, at.xy, 0) + \
+        textureSampleCompareLevel(depths, compare, at.xy, 0.5)";
+    let plain = fragment(&format!("vec4f({both})")) + depth;
     let levels = fragment("vec4f(f32(textureNumLevels(map)))") + depth;
     let arrays = fragment("vec4f(array<array<f32, 2>, 2>()[i32(at.x) & 1][i32(at.y) & 1])");
     let cases = [
