@@ -95,7 +95,9 @@ fn check_table(name: &str, path: &Path) -> Result<(), Failed> {
         let file = mistake.file.as_deref().unwrap_or(default);
         let message = tried(mistake, file, &mistake.text, mistake.run.as_deref())?;
         wrong.extend(
-            told(mistake, file, &message).err().map(|why| format!("{}: {why}", mistake.name)),
+            points_and_helps(mistake, file, &message)
+                .err()
+                .map(|why| format!("{}: {why}", mistake.name)),
         );
         wrong.extend(corrected(mistake, file)?.map(|why| format!("{}: {why}", mistake.name)));
         let missing = untaught(mistake, &message.text);
@@ -137,7 +139,7 @@ fn write_files(mistake: &Mistake, file: &str, text: &str, folder: &Path) -> Resu
 }
 
 /// Whether a message is about the mistake: it refuses or warns, points to its line, and helps.
-fn told(mistake: &Mistake, file: &str, message: &Message) -> Result<(), String> {
+fn points_and_helps(mistake: &Mistake, file: &str, message: &Message) -> Result<(), String> {
     if !message.failed && !message.text.contains("warning[") {
         return Err("it is accepted".to_owned());
     }
@@ -236,8 +238,8 @@ fn tokens(text: &str) -> Vec<&str> {
 
 /// The tokens of the correction that neither the message nor the replaced lines have.
 fn untaught<'m>(mistake: &'m Mistake, message: &str) -> BTreeSet<&'m str> {
-    let told = message.lines().filter(|line| !is_excerpt(line)).collect::<Vec<_>>().join("\n");
-    let told: BTreeSet<&str> = tokens(&told).into_iter().collect();
+    let said = message.lines().filter(|line| !is_excerpt(line)).collect::<Vec<_>>().join("\n");
+    let said: BTreeSet<&str> = tokens(&said).into_iter().collect();
     let lines: Vec<&str> = mistake.text.lines().collect();
     let replaced = |number: &String| {
         let at = number.parse::<usize>().unwrap_or(1).saturating_sub(1);
@@ -259,13 +261,13 @@ fn untaught<'m>(mistake: &'m Mistake, message: &str) -> BTreeSet<&'m str> {
     added.retain(|token| !mistake.given.contains(*token));
     const WHERE: [&str; 5] = ["above", "before", "behind", "order", "write"];
     let needed = match (moves, leaves_out) {
-        (true, _) if WHERE.iter().any(|word| told.contains(word)) => BTreeSet::new(),
+        (true, _) if WHERE.iter().any(|word| said.contains(word)) => BTreeSet::new(),
         (true, _) => BTreeSet::from(["where"]),
         (false, true) if message.contains("leave") => BTreeSet::new(),
         (false, true) => removed,
         (false, false) => added,
     };
-    needed.into_iter().filter(|token| !told.contains(token)).collect()
+    needed.into_iter().filter(|token| !said.contains(token)).collect()
 }
 
 /// The tokens that one text has more often than another.

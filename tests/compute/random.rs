@@ -37,6 +37,8 @@ const SEED: u64 = 1;
 const BATCH: u64 = 50;
 /// How many percent of the programs the crate may refuse.
 const REFUSED: usize = 2;
+/// How many percent of the programs each executor must run at least: drivers and glslang lack things.
+const LEAST: usize = 50;
 
 /// What became of all programs.
 #[derive(Default)]
@@ -91,6 +93,10 @@ pub fn programs() -> Outcome {
     let refused: usize = tally.refused.values().map(|(count, _)| count).sum();
     if refused * 100 > REFUSED * tally.programs {
         return Err(format!("the crate refuses {refused} of the programs: {tally}").into());
+    }
+    let ran = |name: &str| tally.ran.get(name).copied().unwrap_or(0);
+    if let Some(name) = runner.names().find(|name| ran(name) * 100 < LEAST * tally.programs) {
+        return Err(format!("`{name}` ran {} of the programs: {tally}", ran(name)).into());
     }
     match tally.findings.first_key_value() {
         None => Ok(()),

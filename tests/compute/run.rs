@@ -99,6 +99,15 @@ impl Compiled {
         Some(Dispatch { stage, buffers: &self.buffers, groups: self.groups })
     }
 
+    /// Whether the output for an executor writes to a buffer.
+    pub fn binds(&self, form: ComputeForm, (group, binding): (u32, u32)) -> bool {
+        let ComputeForm::Output(target) = form else { return true };
+        self.outputs[&target].as_ref().is_ok_and(|output| {
+            let mut bindings = output.reflection.bindings.iter();
+            bindings.any(|one| one.writable && (one.group, one.binding) == (group, binding))
+        })
+    }
+
     /// The output for an executor, as text for people.
     pub fn output_text(&self, form: ComputeForm) -> String {
         match form {

@@ -27,10 +27,14 @@ enum Root {
 /// # Errors
 /// The message of naga, if it refuses the new module.
 pub fn as_floats(module: &Module) -> Result<Option<(Module, ModuleInfo)>, String> {
+    let globals = module.global_variables.iter().map(|(handle, _)| Root::Global(handle));
+    let mut depths = globals.filter(|root| is_depth(module, *root)).peekable();
+    if depths.peek().is_none() {
+        return Ok(None);
+    }
     let compared = compared_roots(module);
     let is_plain = |root: Root| is_depth(module, root) && !compared.contains(&root);
-    let globals = module.global_variables.iter().map(|(handle, _)| Root::Global(handle));
-    if !globals.into_iter().any(is_plain) {
+    if !depths.any(is_plain) {
         return Ok(None);
     }
     let mut changed = module.clone();

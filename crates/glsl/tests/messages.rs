@@ -61,7 +61,7 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     ("uint a = 4294967296u;", "4294967296u", "`4294967296` is not an integer of 32 bits"),
     ("float while = 1.0;", "while", "`while` is a reserved word of GLSL"),
     ("float a = 1f;", "f", "expected `;`, found `f`"),
-    ("switch (1) { case 0: break; default: }", "default:", "a label has statements behind it"),
+    ("switch (1) { case 0: break; default: }", "default:", "a label has statements after it"),
     ("for (int i = 0; i < 3; i++) { float i = 1.0; }", "i", "`i` is declared twice in this scope"),
     ("for (int i = 0; i < 3; i++) { { float i = 1.0; } } i;", "i", "`i` is not declared"),
     ("while (bool go = true) { int go = 1; }", "go", "`go` is declared twice in this scope"),

@@ -39,21 +39,21 @@ pub fn fit_for_browsers(
     if is_known || text.composed.language == Language::Wesl {
         return Ok(Vec::new());
     }
-    let told = Diagnostic {
+    let diagnostic = Diagnostic {
         severity: Severity::Warning,
         ..Diagnostic::error(codes::NON_UNIFORM_DERIVATIVE, first.message.clone())
     };
-    let told = told.note(format!(
+    let diagnostic = diagnostic.note(format!(
         "the output for `{}` has `diagnostic(off, derivative_uniformity);`",
         Target::WGSL
     ));
-    Ok(vec![at_entry(text, entry, told)])
+    Ok(vec![at_entry(text, entry, diagnostic)])
 }
 
-fn at_entry(text: &TextForms<'_>, entry: &str, told: Diagnostic) -> Diagnostic {
+fn at_entry(text: &TextForms<'_>, entry: &str, diagnostic: Diagnostic) -> Diagnostic {
     let function = text.composed.function(entry);
     match function.and_then(|function| text.composed.place_of(function)) {
-        Some(span) => told.at(span, "in this entry point, or in what it calls"),
-        None => told,
+        Some(span) => diagnostic.at(span, "in this entry point, or in what it calls"),
+        None => diagnostic,
     }
 }

@@ -68,7 +68,13 @@ impl<'t> Lookup<'t> {
 
     /// The expression that has a place.
     pub fn piece(&self, range: &Range<usize>) -> Option<Piece<'t>> {
-        let found = self.tree.expressions.iter().rposition(|one| one.place.range() == *range)?;
+        // Expressions are in the order in which they end.
+        let ends = |end: usize| {
+            self.tree.expressions.partition_point(|one| (one.place.end as usize) < end)
+        };
+        let (first, behind) = (ends(range.end), ends(range.end + 1));
+        let found =
+            (first..behind).rev().find(|at| self.tree.expressions[*at].place.range() == *range)?;
         Some(self.piece_of(found as ExprId))
     }
 

@@ -33,27 +33,27 @@ pub fn has_lints(composed: &Composed, validated: &Validated) -> bool {
     }
 }
 
-/// How a rule is told.
-struct Telling {
+/// How a rule is reported.
+struct RuleReport {
     code: &'static Code,
     /// What stands at the place.
     label: &'static str,
     help: Option<&'static str>,
 }
 
-fn telling(rule: Rule) -> Telling {
+fn report_of(rule: Rule) -> RuleReport {
     match rule {
-        Rule::Derivative => Telling {
+        Rule::Derivative => RuleReport {
             code: codes::NON_UNIFORM_DERIVATIVE,
             label: "other fragments of the quad may not get here",
             help: Some("help: do this before the branch, or give the level or the gradients"),
         },
-        Rule::Barrier => Telling {
+        Rule::Barrier => RuleReport {
             code: codes::NON_UNIFORM_BARRIER,
             label: "other invocations of the workgroup may not get here",
             help: Some("help: do this where all invocations of the workgroup come by"),
         },
-        Rule::Subgroup => Telling {
+        Rule::Subgroup => RuleReport {
             code: codes::NON_UNIFORM_BARRIER,
             label: "other invocations of the subgroup may not get here",
             help: None,
@@ -64,12 +64,12 @@ fn telling(rule: Rule) -> Telling {
         | Rule::Behaviour
         | Rule::Memory
         | Rule::Attribute
-        | Rule::Constant => Telling { code: codes::BROWSERS_REFUSE, label: "here", help: None },
+        | Rule::Constant => RuleReport { code: codes::BROWSERS_REFUSE, label: "here", help: None },
     }
 }
 
 fn describe(composed: &Composed, problem: &Problem, for_browsers: bool) -> Option<Diagnostic> {
-    let Telling { code, label, help } = telling(problem.rule);
+    let RuleReport { code, label, help } = report_of(problem.rule);
     let severity = match problem.severity {
         rules::Severity::Off => return None,
         rules::Severity::Default if for_browsers => Severity::Error,
@@ -83,18 +83,19 @@ fn describe(composed: &Composed, problem: &Problem, for_browsers: bool) -> Optio
     if place.is_none() && !composed.map.is_empty() {
         return None;
     }
-    let told = Diagnostic { severity, ..Diagnostic::error(code, problem.message.clone()) };
-    let told = place.into_iter().fold(told, |told, span| told.at(span, label));
-    let told = problem.notes.iter().fold(told, |told, (place, note)| {
+    let diagnostic = Diagnostic { severity, ..Diagnostic::error(code, problem.message.clone()) };
+    let diagnostic =
+        place.into_iter().fold(diagnostic, |diagnostic, span| diagnostic.at(span, label));
+    let diagnostic = problem.notes.iter().fold(diagnostic, |diagnostic, (place, note)| {
         match composed.map.lookup(place.range()) {
-            Some(span) => told.at(span, note.clone()),
-            None => told,
+            Some(span) => diagnostic.at(span, note.clone()),
+            None => diagnostic,
         }
     });
     let written =
         written_help(composed.text.get(problem.place.range()).unwrap_or_default(), problem);
-    let told = written.into_iter().fold(told, Diagnostic::note);
-    Some(help.into_iter().fold(told, |told, help| told.note(help)))
+    let diagnostic = written.into_iter().fold(diagnostic, Diagnostic::note);
+    Some(help.into_iter().fold(diagnostic, |diagnostic, help| diagnostic.note(help)))
 }
 
 /// What to write, with the author's own text.

@@ -18,8 +18,8 @@ pub struct Finding {
     pub about: String,
 }
 
-/// How wgpu fails for WGSL that Tint and the other targets take: where it puts values in the place of
-/// overrides, its naga emits an element of a constant list twice, or before it is computed.
+/// How wgpu fails for WGSL with overrides that Tint and the other targets take: where it puts values in
+/// their place, its naga emits an element of a constant list twice, or before it is computed.
 const FAULTS_OF_WGPU: [&str; 2] = ["Pipeline constant error", "wgpu or naga panicked"];
 
 pub struct Runner {
@@ -105,6 +105,12 @@ impl Runner {
         (compiled, owners)
     }
 
+    /// The executors of outputs.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        let outputs = self.sessions.iter().filter(|one| one.form != ComputeForm::Module);
+        outputs.map(|one| one.entry.name)
+    }
+
     /// Whether a program has a finding of a kind.
     pub fn has(&mut self, program: &Program, kind: &str) -> bool {
         let found = self.run(&[(0, program.clone())], &mut Tally::default());
@@ -146,14 +152,18 @@ impl Tally {
                 *self.lacks.entry(lack(&error.message)).or_default() += 1;
                 None
             }
-            Some(Err(error)) if FAULTS_OF_WGPU.iter().any(|one| error.message.contains(one)) => {
+            Some(Err(error))
+                if program.text.contains("override ")
+                    && FAULTS_OF_WGPU.iter().any(|one| error.message.contains(one)) =>
+            {
                 *self.lacks.entry(lack("wgpu's own naga fails")).or_default() += 1;
                 None
             }
             Some(Err(error)) => Some(format!("does not run: {}", error.message)),
             Some(Ok(found)) => {
                 *self.ran.entry(name).or_default() += 1;
-                self.difference(program, wanted, &found)
+                let bound = |place: &(u32, u32)| compiled.binds(executor.form, *place);
+                self.difference(program, wanted, &found, &bound)
             }
         }
     }
@@ -164,11 +174,14 @@ impl Tally {
         program: &Program,
         wanted: &Buffers,
         found: &Buffers,
+        is_bound: &dyn Fn(&(u32, u32)) -> bool,
     ) -> Option<String> {
         for (place, offsets) in &program.numbers {
-            // An output leaves out a buffer that the entry point does not use.
-            let (Some(wanted), Some(found)) = (wanted.get(place), found.get(place)) else {
-                continue;
+            let (wanted, found) = match (wanted.get(place), found.get(place)) {
+                (Some(wanted), Some(found)) => (wanted, found),
+                (Some(_), None) if is_bound(place) => return Some(format!("{place:?} is missing")),
+                // An output leaves out a buffer that the entry point does not use.
+                _ => continue,
             };
             for offset in offsets {
                 self.numbers += 1;

@@ -3,6 +3,7 @@
 //! where they come from.
 
 mod bevy;
+mod compiled;
 mod cts;
 mod deqp;
 mod folder;
@@ -14,7 +15,6 @@ mod wesl;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use lamplight::diagnostic::{Diagnostic, Severity, codes};
 use lamplight::lint;
@@ -97,8 +97,8 @@ pub fn run(arguments: &[String]) -> CommandResult {
         let folder = PathBuf::from(folder);
         let suite = Suite::of(&folder);
         match options.outputs {
-            true => differences.extend(judge_outputs(&suite, &folder)?.err()),
-            false => differences.extend(judge_programs(&suite, &folder, options)?.err()),
+            true => differences.extend(validate_outputs(&suite, &folder)?.err()),
+            false => differences.extend(compare_programs(&suite, &folder, options)?.err()),
         }
     }
     match differences.is_empty() {
@@ -122,7 +122,7 @@ struct RunOptions {
 }
 
 /// What is accepted and refused of a suite.
-fn judge_programs(
+fn compare_programs(
     suite: &Suite,
     folder: &Path,
     options: RunOptions,
@@ -147,7 +147,7 @@ fn judge_programs(
 }
 
 /// What validators say of the outputs of a suite's valid programs.
-fn judge_outputs(suite: &Suite, folder: &Path) -> Result<table::Comparison, CommandFailure> {
+fn validate_outputs(suite: &Suite, folder: &Path) -> Result<table::Comparison, CommandFailure> {
     let name = match suite {
         Suite::Folder => folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         _ => suite.name().to_owned(),
@@ -155,7 +155,7 @@ fn judge_outputs(suite: &Suite, folder: &Path) -> Result<table::Comparison, Comm
     let table = match suite {
         Suite::Cts => outputs::tabulate(&name, &cts::programs(folder)?)?,
         Suite::Folder => outputs::tabulate(&name, &folder::programs(folder)?)?,
-        Suite::Deqp => outputs::judge_units(&name, deqp::units_of_valid(folder)?)?,
+        Suite::Deqp => outputs::validate_units(&name, deqp::units_of_valid(folder)?)?,
         Suite::Wesl | Suite::Bevy => {
             let message = format!("`{}` has modules, and no programs", folder.display());
             return Err(CommandFailure::usage(message));
@@ -163,9 +163,9 @@ fn judge_outputs(suite: &Suite, folder: &Path) -> Result<table::Comparison, Comm
     };
     print!("{}: {table}", folder.display());
     let words = "outputs, refused by validators";
-    let counts = [table.outputs, table.refused()];
+    let counts = (&[table.outputs][..], &[table.refused()][..]);
     let line = format!("{}{name}", table::OUTPUTS);
-    let comparison = table::compare_counts(&line, &commit_of(folder), words, &counts)?;
+    let comparison = table::compare_counts(&line, &commit_of(folder), words, counts)?;
     if let Ok(note) = &comparison {
         println!("{note}");
     }
@@ -188,32 +188,6 @@ fn tabulate(programs: &[Program]) -> Table {
         table.add(program, refusal(&program.text).as_ref());
     }
     table
-}
-
-/// What a function gives for each of some inputs, in their order, computed by several threads.
-fn in_parallel<I: Sync, O: Send>(
-    inputs: &[I],
-    threads: usize,
-    work: impl Fn(&I) -> O + Sync,
-) -> Vec<O> {
-    let next = AtomicUsize::new(0);
-    let take = || {
-        let mut made = Vec::new();
-        loop {
-            let at = next.fetch_add(1, Ordering::Relaxed);
-            let Some(input) = inputs.get(at) else { return made };
-            made.push((at, work(input)));
-        }
-    };
-    let mut made: Vec<(usize, O)> = std::thread::scope(|scope| {
-        let running: Vec<_> = (0..threads).map(|_| scope.spawn(take)).collect();
-        let joined = running.into_iter().map(|thread| thread.join());
-        joined
-            .flat_map(|made| made.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-            .collect()
-    });
-    made.sort_by_key(|(at, _)| *at);
-    made.into_iter().map(|(_, output)| output).collect()
 }
 
 /// Why the crate refuses a text for browsers: an error, or what is one for the target `wgsl`.

@@ -33,6 +33,9 @@ pub fn in_full() -> Result<(), Failed> {
     for package in PACKAGES {
         let mut files = Vec::new();
         rust_files(&Path::new(ROOT).join("crates").join(package).join("src"), &mut files)?;
+        if files.is_empty() {
+            return Err(format!("crates/{package} has no sources").into());
+        }
         for file in files {
             let is_words = |part: &str| WORDS.contains(&part);
             if file.iter().filter_map(|part| part.to_str()).any(is_words) {

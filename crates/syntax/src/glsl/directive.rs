@@ -40,13 +40,6 @@ pub fn link_branches(module: &mut Module) {
                 let error = check_branch(open.last_mut(), index, span, otherwise).err();
                 module.errors.extend(error);
             }
-            // In a group that is skipped, only what continues or ends it is read. This would, if GLSL
-            // had it.
-            Directive::Invalid(error)
-                if error.notes.iter().any(|note| note.contains(CONTINUED)) =>
-            {
-                module.errors.push((**error).clone());
-            }
             Directive::Endif => match open.pop() {
                 Some(mut last) => {
                     last.branches.push(index);
@@ -123,10 +116,10 @@ fn read_directive(
         return Ok(Directive::Empty);
     }
     let line = DirectiveTokens { module, start: start + 1, end, symbols };
-    // A text behind these is an error, and they still end a branch: the rest would be unbalanced.
-    if let Some(extra) = line.extra_of_branch() {
-        module.errors.push(extra);
-    }
+    // A text behind these is an error, and they still end a branch: the rest would be unbalanced. What
+    // continues a conditional in other languages is an error in a group that is skipped too.
+    let error = line.extra_of_branch().or_else(|| line.foreign_branch());
+    module.errors.extend(error);
     let line = DirectiveTokens { module, start: start + 1, end, symbols };
     let condition = start as u32 + 1..end as u32;
     match line.module.tokens[start].symbol {
@@ -151,12 +144,14 @@ fn read_directive(
             Ok(Directive::PragmaOnce)
         }
         known::PRAGMA => Ok(Directive::Pragma(line.whole())),
-        wrong => Err(line.unknown(symbols.text(wrong), start)),
+        // The error is known.
+        _ if line.foreign_branch().is_some() => Ok(Directive::Empty),
+        wrong => {
+            let name = symbols.text(wrong);
+            Err(line.unknown(name).suggest(name, DIRECTIVES.iter().copied()))
+        }
     }
 }
-
-/// How the help begins for directives that continue a conditional in other languages.
-const CONTINUED: &str = "help: a conditional goes on with ";
 
 /// The tokens after a directive's name.
 struct DirectiveTokens<'m> {
@@ -212,17 +207,23 @@ impl DirectiveTokens<'_> {
         Diagnostic::error(codes::MALFORMED_DIRECTIVE, message).at(self.rest(), label)
     }
 
-    fn unknown(&self, name: &str, at: usize) -> Diagnostic {
-        let error =
-            Diagnostic::error(codes::MALFORMED_DIRECTIVE, format!("unknown directive `#{name}`"))
-                .at(self.span_of(&self.module.tokens[at]), "not a directive of GLSL");
+    /// A directive that continues a conditional in other languages.
+    fn foreign_branch(&self) -> Option<Diagnostic> {
+        let name = self.symbols.text(self.module.tokens[self.start - 1].symbol);
         let condition = self.token(0).map_or("NAME", |token| self.symbols.text(token.symbol));
-        match name {
-            "elifdef" => error.note(format!("{CONTINUED}`#elif defined({condition})`")),
-            "elifndef" => error.note(format!("{CONTINUED}`#elif !defined({condition})`")),
-            "elseif" | "elsif" | "elseifdef" => error.note(format!("{CONTINUED}`#elif`")),
-            _ => error.suggest(name, DIRECTIVES.iter().copied()),
-        }
+        let own = match name {
+            "elifdef" => format!("#elif defined({condition})"),
+            "elifndef" => format!("#elif !defined({condition})"),
+            "elseif" | "elsif" | "elseifdef" => "#elif".to_owned(),
+            _ => return None,
+        };
+        Some(self.unknown(name).note(format!("help: a conditional goes on with `{own}`")))
+    }
+
+    fn unknown(&self, name: &str) -> Diagnostic {
+        let message = format!("unknown directive `#{name}`");
+        Diagnostic::error(codes::MALFORMED_DIRECTIVE, message)
+            .at(self.span_of(&self.module.tokens[self.start - 1]), "not a directive of GLSL")
     }
 
     fn name(&self, directive: &str) -> Result<(Symbol, Span), Diagnostic> {

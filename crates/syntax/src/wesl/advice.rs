@@ -5,38 +5,26 @@ use lamplight_diagnostic::Diagnostic;
 use lamplight_diagnostic::source::Span;
 
 use super::token::{TokenKind, Tokens};
-
-/// Types of GLSL and HLSL, as WGSL calls them.
-const TYPES: [(&str, &str); 17] = [
-    ("bool", "bool"),
-    ("float", "f32"),
-    ("float2", "vec2f"),
-    ("float3", "vec3f"),
-    ("float4", "vec4f"),
-    ("half", "f32"),
-    ("int", "i32"),
-    ("mat2", "mat2x2f"),
-    ("mat3", "mat3x3f"),
-    ("mat4", "mat4x4f"),
-    ("uint", "u32"),
-    ("vec2", "vec2f"),
-    ("vec3", "vec3f"),
-    ("vec4", "vec4f"),
-    ("ivec2", "vec2i"),
-    ("ivec3", "vec3i"),
-    ("uvec2", "vec2u"),
-];
+use crate::foreign::wgsl_text;
 
 /// Whether a word is a type of WGSL or of another language.
 fn is_type(name: &str) -> bool {
-    let known = TYPES.iter().any(|(foreign, native)| *foreign == name || *native == name);
-    known
-        || ["vec", "mat", "array", "texture", "sampler"].iter().any(|start| name.starts_with(start))
+    const STARTS: [&str; 5] = ["vec", "mat", "array", "texture", "sampler"];
+    matches!(name, "bool" | "f16" | "f32" | "i32" | "u32")
+        || native_type(name) != name
+        || STARTS.iter().any(|start| name.starts_with(start))
 }
 
 /// A type of another language as WGSL calls it, or the same.
-fn native_type(name: &str) -> &str {
-    TYPES.iter().find(|(foreign, _)| *foreign == name).map_or(name, |(_, native)| native)
+fn native_type(name: &str) -> String {
+    let is_code = |text: &String| !text.contains([' ', '(', '`']);
+    match name {
+        // Without a type of numbers they are no types.
+        "vec2" | "vec3" | "vec4" => format!("{name}f"),
+        // WGSL has `f16` where it is enabled only.
+        "half" => "f32".to_owned(),
+        _ => wgsl_text(name).filter(is_code).unwrap_or_else(|| name.to_owned()),
+    }
 }
 
 /// Adds advice to the error that something was expected at a token.
@@ -151,7 +139,7 @@ fn typed_name(tokens: Tokens<'_>, at: usize, error: Diagnostic) -> Diagnostic {
     let pointed = match (tokens.text(at + 1), tokens.word(at + 1)) {
         (":", _) => native_type(tokens.text(at + 2)),
         (_, Some(_)) => native_type(name),
-        _ => "f32",
+        _ => "f32".to_owned(),
     };
     let named = if tokens.word(at + 1).is_some() { tokens.text(at + 1) } else { name };
     match of_type {

@@ -321,17 +321,7 @@ fn semicolon(text: &str, at: &Range<usize>, mistake: &mut Mistake) {
     let word = crate::hints::last_word(before);
     let without = before.strip_suffix(word).unwrap_or(before).trim_end();
     let before = if without.ends_with('}') && !word.is_empty() { without } else { before };
-    let between = text.get(before.len()..at.start).unwrap_or_default();
-    if !between.contains('\n') && text.get(at.clone()) != Some("}") {
-        return;
-    }
-    let start = before.rfind('\n').map_or(0, |found| found + 1);
-    let code = before[start..].split("//").next().unwrap_or_default().trim_end();
-    let end = start + code.len();
-    let last = crate::hints::last_word(code).len().max(1);
-    mistake.message = "`;` is missing".to_owned();
-    mistake.labels = vec![(end.saturating_sub(last)..end, "after this".to_owned())];
-    mistake.write(format!("{};", code.trim_start()));
+    mistake.missing_semicolon(text, before.len(), at);
 }
 
 /// A list of arguments or parameters that goes on strangely.

@@ -21,6 +21,8 @@ use std::ops::Range;
 
 use lamplight_rules::{Lookup, Place};
 
+use crate::hints::last_word;
+
 /// An error about a composed text, before its places are those of the author.
 #[derive(Debug, Default)]
 pub struct Mistake {
@@ -45,6 +47,24 @@ impl Mistake {
     fn place(&mut self, range: Range<usize>, label: impl Into<String>) {
         self.labels.retain(|(known, _)| *known != range);
         self.labels.insert(0, (range, label.into()));
+    }
+
+    /// Says that `;` is missing at the end of what comes before a place, if a line or a block ends
+    /// there: else something else is wrong.
+    fn missing_semicolon(&mut self, text: &str, before: usize, at: &Range<usize>) {
+        let between = text.get(before..at.start).unwrap_or_default();
+        if !between.contains('\n') && text.get(at.clone()) != Some("}") {
+            return;
+        }
+        let before = text.get(..before).unwrap_or_default();
+        let start = before.rfind('\n').map_or(0, |found| found + 1);
+        // A comment at the end of the line is not what lacks it.
+        let code = before[start..].split("//").next().unwrap_or_default().trim_end();
+        let end = start + code.len();
+        let last = last_word(code).len().max(1);
+        self.message = "`;` is missing".to_owned();
+        self.labels = vec![(end.saturating_sub(last)..end, "after this".to_owned())];
+        self.write(format!("{};", code.trim_start()));
     }
 
     fn start(&self) -> usize {

@@ -24,32 +24,15 @@ pub fn expected(source: &Source<'_>, wanted: &str, mistake: &mut Mistake) {
         ("{", ":") => mistake.help("write `->` before the type of the result"),
         (",", ";") => mistake.help("members end with `,`: write it for each `;`"),
         (";", "[") => array(line, mistake),
-        (";", "(") if line.contains('.') => method(source, &at, line, mistake),
+        (";", "(") if line.contains('.') => method(line, mistake),
         (";", name) if is_word(name) && line.ends_with(')') && !is_next_line => {
             cast(line, name, mistake);
         }
         _ if wanted == ";" && before.len() < source.text.len() => {
-            missing_semicolon(source, before, &at, mistake);
+            mistake.missing_semicolon(source.text, before.len(), &at);
         }
         _ => {}
     }
-}
-
-/// `;` is missing at the end of what comes before.
-fn missing_semicolon(source: &Source<'_>, before: &str, at: &Range<usize>, mistake: &mut Mistake) {
-    let between = source.slice(&(before.len()..at.start));
-    if !between.contains('\n') && source.slice(at) != "}" {
-        return;
-    }
-    // A comment at the end of the line is not what lacks it.
-    let line_start = before.rfind('\n').map_or(0, |at| at + 1);
-    let line = &before[line_start..];
-    let code = line.split("//").next().unwrap_or(line).trim_end();
-    let end = line_start + code.len();
-    let last = last_word(code).len().max(1);
-    mistake.message = "`;` is missing".to_owned();
-    mistake.labels = vec![(end.saturating_sub(last)..end, "after this".to_owned())];
-    mistake.write(format!("{};", code.trim_start()));
 }
 
 fn operators(found: &str, line: &str, mistake: &mut Mistake) -> bool {
@@ -81,7 +64,7 @@ fn numbers(source: &Source<'_>, at: &Range<usize>, mistake: &mut Mistake) -> boo
     let number = &before[start..];
     let digits = number.split('.').next().unwrap_or_default();
     let is_number = number.len() > 1 && digits.bytes().all(|byte| byte.is_ascii_digit());
-    if !is_number || digits.is_empty() || number.trim_end() != before[start..].to_owned() {
+    if !is_number || digits.is_empty() {
         return false;
     }
     let found = source.slice(at);
@@ -103,11 +86,10 @@ fn array(line: &str, mistake: &mut Mistake) {
 }
 
 /// `v.length()`.
-fn method(source: &Source<'_>, at: &Range<usize>, line: &str, mistake: &mut Mistake) {
+fn method(line: &str, mistake: &mut Mistake) {
     let name = last_word(line);
     let object = line.strip_suffix(name).and_then(|rest| rest.strip_suffix('.'));
     let Some(object) = object.map(last_word) else { return };
-    let _ = (source, at);
     mistake.message = format!("WGSL has no methods, and `{name}` is called like one");
     mistake.write(format!("{name}({object})"));
 }

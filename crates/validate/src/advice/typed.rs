@@ -22,7 +22,7 @@ pub enum Wrong {
     /// What is assigned.
     Stored { found: String, expected: String },
     /// An argument of a function, by its number from 0.
-    Argument { at: usize, found: String, expected: String },
+    Argument { function: String, at: usize, found: String, expected: String },
     /// What is in brackets behind an array.
     Index { found: String },
     /// The arguments of a constructor, with how many components it takes and has.
@@ -64,14 +64,15 @@ pub fn advise_typed(text: &str, wrong: &Wrong, mistake: &mut Mistake) {
         Wrong::Returned { found, expected } => {
             returned(&source, lookup, &place, found.as_deref(), expected.as_deref(), mistake);
         }
-        Wrong::Condition { found } => {
-            let Some((_, Step::Condition(value))) = lookup.step(&place) else { return };
-            mistake.labels = vec![(value.range(), format!("this is `{found}`"))];
-            give(converted(source.part(value), found, "bool"), mistake);
-        }
+        Wrong::Condition { found } => condition(&source, lookup, &place, found, mistake),
         Wrong::Stored { found, expected } => stored(&source, lookup, found, expected, mistake),
-        Wrong::Argument { at, found, expected } | Wrong::Coordinates { at, found, expected } => {
-            argument(&source, lookup, *at, found, expected, mistake);
+        Wrong::Argument { function, at, found, expected } => {
+            let call = called(lookup, mistake, *at, |name| name == function);
+            argument(&source, call, *at, found, expected, mistake);
+        }
+        Wrong::Coordinates { at, found, expected } => {
+            let call = called(lookup, mistake, *at, |name| name.starts_with("texture"));
+            argument(&source, call, *at, found, expected, mistake);
         }
         Wrong::Index { found } => {
             let Some(Piece::Index { base: _, index }) = lookup.piece(&place) else { return };
@@ -93,6 +94,19 @@ pub fn advise_typed(text: &str, wrong: &Wrong, mistake: &mut Mistake) {
     }
 }
 
+/// A condition that is no `bool`.
+fn condition(
+    source: &Source<'_>,
+    lookup: &Lookup<'_>,
+    place: &Range<usize>,
+    found: &str,
+    mistake: &mut Mistake,
+) {
+    let Some((_, Step::Condition(value))) = lookup.step(place) else { return };
+    mistake.labels = vec![(value.range(), format!("this is `{found}`"))];
+    give(converted(source.part(value), found, "bool"), mistake);
+}
+
 /// An index beyond the end.
 fn bounds(
     source: &Source<'_>,
@@ -109,13 +123,13 @@ fn bounds(
 /// An argument of another type than its parameter.
 fn argument(
     source: &Source<'_>,
-    lookup: &Lookup<'_>,
+    call: Option<(Place, &str, Vec<Place>)>,
     at: usize,
     found: &str,
     expected: &str,
     mistake: &mut Mistake,
 ) {
-    let Some((call, _, arguments)) = called(lookup, mistake, at) else { return };
+    let Some((call, _, arguments)) = call else { return };
     let argument = arguments[at];
     mistake.labels = vec![(argument.range(), format!("this is `{}`", short_type(found)))];
     if in_another_order(source, &arguments, at, found, expected) {
@@ -147,7 +161,8 @@ fn read_only(
 
 /// A lookup of a texture by the level that derivatives choose, where there are none.
 fn level(source: &Source<'_>, lookup: &Lookup<'_>, mistake: &mut Mistake) {
-    let Some((_, name, arguments)) = called(lookup, mistake, 1) else { return };
+    let is_texture = |name: &str| name.starts_with("texture");
+    let Some((_, name, arguments)) = called(lookup, mistake, 1, is_texture) else { return };
     let texts: Vec<&str> = arguments.iter().map(|one| source.part(*one)).collect();
     let (base, compares) = (name.trim_end_matches("Bias"), name.ends_with("Compare"));
     let kept = texts.len().min(if compares { 4 } else { 3 });
@@ -159,13 +174,17 @@ fn level(source: &Source<'_>, lookup: &Lookup<'_>, mistake: &mut Mistake) {
 }
 
 /// The call that an error is about, with its name and its arguments, of which there are more than some.
+/// An argument may be a call too, so the name must be one of the function's.
 fn called<'t>(
     lookup: &Lookup<'t>,
     mistake: &Mistake,
     least: usize,
+    is_function: impl Fn(&str) -> bool,
 ) -> Option<(Place, &'t str, Vec<Place>)> {
     mistake.labels.iter().find_map(|(range, _)| match lookup.call(range.start)? {
-        (place, Piece::Call { name, arguments }) if arguments.len() > least => {
+        (place, Piece::Call { name, arguments })
+            if arguments.len() > least && is_function(name) =>
+        {
             Some((place, name, arguments))
         }
         _ => None,

@@ -9,7 +9,6 @@ use super::{
     Sentence, bare_type, expression, foreign_words, inner_type_text, lacking_words, type_text,
 };
 use crate::advice::Wrong;
-use crate::inner_blocks;
 use lamplight_diagnostic::codes;
 
 pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> Sentence {
@@ -324,7 +323,6 @@ fn argument_words(
     let name = called.name.as_deref().unwrap_or("the function");
     let expected = type_text(module, required);
     let found = value_type(module, of, seen);
-    let other = swapped(module, of, called, (at, seen), &expected.replace('`', ""));
     let seen = found
         .as_ref()
         .map_or_else(|| "has another type".to_owned(), |found| format!("is `{found}`"));
@@ -332,52 +330,15 @@ fn argument_words(
         codes::CALL_MISMATCH,
         format!("argument {} of `{name}` is {expected}, and this {seen}", at + 1),
     );
-    match (found, other) {
-        (_, Some(other)) => {
-            let other = parameter_text(module, other);
-            sentence.note(format!(
-                "help: the argument fits `{other}`: mind the order of the parameters"
-            ))
-        }
-        (Some(found), None) => {
-            sentence.about(Wrong::Argument { at, found, expected: expected.replace('`', "") })
-        }
-        (None, None) => sentence,
+    match found {
+        Some(found) => sentence.about(Wrong::Argument {
+            function: name.to_owned(),
+            at,
+            found,
+            expected: expected.replace('`', ""),
+        }),
+        None => sentence,
     }
-}
-
-/// The parameter whose argument stands in the place of another: each has the type of the other.
-fn swapped<'m>(
-    module: &Module,
-    of: &Function,
-    called: &'m Function,
-    (at, seen): (usize, Handle<Expression>),
-    expected: &str,
-) -> Option<&'m naga::FunctionArgument> {
-    let found = value_type(module, of, seen)?;
-    let arguments = call_arguments(&of.body, at, seen)?;
-    let pairs = called.arguments.iter().zip(arguments);
-    let mut fitting = pairs.filter(|(parameter, argument)| {
-        type_text(module, parameter.ty).replace('`', "") == found
-            && value_type(module, of, **argument).as_deref() == Some(expected)
-    });
-    fitting.next().map(|(parameter, _)| parameter)
-}
-
-/// The arguments of the call that has this one.
-fn call_arguments(
-    block: &Block,
-    at: usize,
-    seen: Handle<Expression>,
-) -> Option<&[Handle<Expression>]> {
-    block.iter().find_map(|statement| match statement {
-        Statement::Call { function: _, arguments, result: _ }
-            if arguments.get(at) == Some(&seen) =>
-        {
-            Some(arguments.as_slice())
-        }
-        _ => inner_blocks(statement).into_iter().find_map(|inner| call_arguments(inner, at, seen)),
-    })
 }
 
 fn parameter_text(module: &Module, parameter: &naga::FunctionArgument) -> String {

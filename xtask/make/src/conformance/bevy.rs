@@ -12,9 +12,12 @@ use lamplight::resolve::{Packages, wesl};
 use lamplight::source::{Memory, Package, SourceSet};
 use lamplight::validate::validate_for_some;
 
+use lamplight_validate::on_large_stack;
+use rayon::prelude::*;
+
+use super::Program;
 use super::folder::files_below;
 use super::table::Table;
-use super::{Program, in_parallel};
 use xtask::CommandFailure;
 
 /// The folder of the crates.
@@ -57,9 +60,11 @@ pub fn tabulate(checkout: &Path) -> Result<Table, CommandFailure> {
             "`bevy.txt` names what is not there: {unknown}"
         )));
     }
-    let outcomes = in_parallel(&programs, 2, |(name, path, module)| {
+    let outcome_of = |(name, path, module): &(&String, &String, String)| {
         composed(&crates, name, path, &needs.settings(module)).err()
-    });
+    };
+    let outcomes: Vec<Option<Diagnostic>> =
+        on_large_stack(|| programs.par_iter().map(outcome_of).collect());
     for ((.., module), outcome) in programs.into_iter().zip(outcomes) {
         let program = Program { name: module, text: String::new(), expected: true };
         match outcome {

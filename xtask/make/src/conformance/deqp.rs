@@ -10,18 +10,17 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use lamplight::bundle::{Language, Stage, Target, Unit};
-use lamplight::compose::{self, Composed, Keep, Options};
-use lamplight::diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight::bundle::{Stage, Unit};
+use lamplight::diagnostic::Diagnostic;
 use lamplight::glsl::number_program;
-use lamplight::link::{CompiledUnit, Linker, TextForms, compile};
-use lamplight::permute::Settings;
-use lamplight::resolve::{self, Packages};
-use lamplight::source::SourceSet;
+use lamplight::link::CompiledUnit;
+use lamplight_validate::on_large_stack;
+use rayon::prelude::*;
 
+use super::Program;
+use super::compiled::{composed_glsl, first, for_targets_that_can};
 use super::folder::files_below;
 use super::table::{Table, general};
-use super::{Program, in_parallel};
 use parse::{Case, Expect, parse_cases};
 use stage::{Shaders, shaders_of};
 use xtask::CommandFailure;
@@ -33,9 +32,6 @@ pub const FOLDERS: [&str; 4] = [
     "data/gles31/shaders",
     "external/openglcts/data/gl_cts/data",
 ];
-
-/// How many threads compile.
-const THREADS: usize = 2;
 
 /// What became of a program.
 enum Verdict {
@@ -53,7 +49,9 @@ pub fn tabulate(checkout: &Path) -> Result<Table, CommandFailure> {
     let mut table = Table::default();
     let cases = read_cases(checkout, &mut table)?;
     let programs = programs_of(&cases, &mut table);
-    let verdicts = in_parallel(&programs, THREADS, |(case, shaders)| judge(case, shaders));
+    let verdicts: Vec<Verdict> = on_large_stack(|| {
+        programs.par_iter().map(|(case, shaders)| verdict(case, shaders)).collect()
+    });
     for ((case, shaders), verdict) in programs.iter().zip(verdicts) {
         add_verdict(&mut table, case, shaders, verdict);
     }
@@ -66,10 +64,11 @@ pub fn units_of_valid(checkout: &Path) -> Result<Vec<(String, Vec<Unit>)>, Comma
     let cases = read_cases(checkout, &mut table)?;
     let mut programs = programs_of(&cases, &mut table);
     programs.retain(|(case, _)| case.expect != Expect::CompileFail);
-    let units = in_parallel(&programs, THREADS, |(_, shaders)| {
+    let units_of = |(_, shaders): &(&Case, Shaders)| -> Vec<Unit> {
         let units = compiled_stages(shaders).unwrap_or_default();
-        units.into_iter().map(|made| made.unit).collect::<Vec<Unit>>()
-    });
+        units.into_iter().map(|made| made.unit).collect()
+    };
+    let units: Vec<Vec<Unit>> = on_large_stack(|| programs.par_iter().map(units_of).collect());
     let names = programs.iter().map(|(case, shaders)| name_of(case, shaders));
     Ok(names.zip(units).collect())
 }
@@ -166,7 +165,7 @@ pub fn output_of(mut command: Command, text: &str) -> Option<Output> {
     running.wait_with_output().ok()
 }
 
-fn judge(case: &Case, shaders: &Shaders) -> Verdict {
+fn verdict(case: &Case, shaders: &Shaders) -> Verdict {
     let units = match compiled_stages(shaders) {
         Ok(units) => units,
         Err(error) => return Verdict::Refused(error),
@@ -194,44 +193,9 @@ fn compiled_stages(shaders: &Shaders) -> Result<Vec<CompiledUnit>, Diagnostic> {
     stages.map(|((stage, text), found)| compiled(text, *stage, &numbered(found))).collect()
 }
 
-/// Compiles a text for every target that has what it needs. The error is the author's, or what the last
-/// target lacks if there is none that has it.
+/// Compiles a text for every target that has what it needs.
 fn compiled(text: &str, stage: Stage, numbers: &str) -> Result<CompiledUnit, Diagnostic> {
-    let mut composed = composed(text, stage).map_err(first)?;
+    let mut composed = composed_glsl(text, stage).map_err(first)?;
     composed.text.push_str(numbers);
-    let text = TextForms { composed: &composed, lean: &composed };
-    let made = |targets: &[Target]| compile(&text, "main", targets, &Linker::new(targets));
-    let all = match made(Target::ALL) {
-        Ok(unit) => return Ok(unit),
-        Err(errors) => first(errors),
-    };
-    let mut some: Option<CompiledUnit> = None;
-    for target in Target::ALL {
-        match (made(&[*target]), &mut some) {
-            (Ok(unit), Some(some)) => some.unit.targets.extend(unit.unit.targets),
-            (Ok(unit), None) => some = Some(unit),
-            (Err(errors), _) if is_lack(&errors) => {}
-            (Err(errors), _) => return Err(first(errors)),
-        }
-    }
-    some.ok_or(all)
-}
-
-fn is_lack(errors: &[Diagnostic]) -> bool {
-    let lacks = [codes::EMIT_FAILED, codes::NOT_PORTABLE, codes::NON_UNIFORM_BARRIER];
-    errors.first().is_some_and(|error| lacks.contains(&error.code))
-}
-
-/// The whole text, preprocessed: the command leaves out what no entry point reaches.
-fn composed(text: &str, stage: Stage) -> Result<Composed, Diagnostics> {
-    let path = format!("case.{}", stage.suffix());
-    let packages = Packages::of_text(&path, text.to_owned());
-    let graph = resolve::load(&mut SourceSet::default(), &packages, &path, Language::Glsl)?;
-    let options = Options { keep: Keep::All, ..Options::default() };
-    compose::compose(&graph, &Settings::default(), &options)
-}
-
-fn first(errors: Diagnostics) -> Diagnostic {
-    let none = || Diagnostic::error(codes::GLSL_ERROR, "refused without an error");
-    errors.into_iter().next().unwrap_or_else(none)
+    for_targets_that_can(&composed, "main")
 }

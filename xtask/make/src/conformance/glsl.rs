@@ -8,8 +8,9 @@ use std::process::{Command, Stdio};
 use lamplight::bundle::{Language, Stage, Target};
 use lamplight::compose::Composed;
 use lamplight::compose::glsl::named_stage;
-use lamplight::diagnostic::codes;
 use lamplight::link::{Linker, TextForms, compile};
+
+use super::compiled::is_lack;
 use xtask::{CommandFailure, CommandResult};
 
 fn usage() -> CommandFailure {
@@ -146,8 +147,7 @@ fn compiled(text: &str, stage: Stage) -> Result<usize, String> {
             Ok(_) => made += 1,
             Err(problems) => {
                 let first = problems.first().ok_or_else(String::new)?;
-                let lacks = [codes::EMIT_FAILED, codes::NOT_PORTABLE, codes::NON_UNIFORM_BARRIER];
-                if !lacks.contains(&first.code) {
+                if !is_lack(first) {
                     return Err(first.message.clone());
                 }
                 lacking = first.message.clone();

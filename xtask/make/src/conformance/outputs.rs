@@ -3,17 +3,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use lamplight::bundle::{Language, Target, Unit};
-use lamplight::compose::{self, Composed, Keep, Options};
+use lamplight::bundle::{Target, Unit};
+use lamplight::compose::Keep;
 use lamplight::generate::entry_points;
-use lamplight::link::{Linker, TextForms, compile};
-use lamplight::permute::Settings;
-use lamplight::resolve::{self, Packages};
-use lamplight::source::SourceSet;
+use lamplight_validate::on_large_stack;
 use lamplight_validators::{Extent, Output, Refusal, Verdict, verdict};
+use rayon::prelude::*;
 
+use super::Program;
+use super::compiled::{composed_wgsl, for_targets_that_can};
 use super::table::general;
-use super::{Program, in_parallel};
 use crate::progress::show_progress;
 use crate::validate::tint;
 use xtask::CommandFailure;
@@ -36,44 +35,24 @@ type Units = Vec<Unit>;
 /// the validators look at the outputs.
 pub fn tabulate(suite: &str, programs: &[Program]) -> Result<OutputTable, CommandFailure> {
     let valid: Vec<&Program> = programs.iter().filter(|program| program.expected).collect();
-    let units = in_parallel(&valid, 2, |program| units_of(&program.text));
+    let units: Vec<Units> =
+        on_large_stack(|| valid.par_iter().map(|program| units_of(&program.text)).collect());
     let named = valid.iter().map(|program| program.name.clone()).zip(units);
-    judge_units(suite, named)
+    validate_units(suite, named)
 }
 
 fn units_of(text: &str) -> Units {
-    let Some(whole) = composed(text, Keep::EntryPoints) else { return Vec::new() };
+    let Ok(whole) = composed_wgsl(text, Keep::EntryPoints) else { return Vec::new() };
     let entries = entry_points(&whole).unwrap_or_default().into_iter();
     let unit_of = |entry: String| {
-        let alone = composed(text, Keep::Items(vec![entry.clone()]))?;
-        compiled(&alone, &entry)
+        let alone = composed_wgsl(text, Keep::Items(vec![entry.clone()])).ok()?;
+        Some(for_targets_that_can(&alone, &entry).ok()?.unit)
     };
     entries.filter_map(|(entry, _)| unit_of(entry)).collect()
 }
 
-fn composed(text: &str, keep: Keep) -> Option<Composed> {
-    let packages = Packages::of_text("shader.wgsl", text.to_owned());
-    let mut sources = SourceSet::default();
-    let graph = resolve::load(&mut sources, &packages, "shader.wgsl", Language::Wesl).ok()?;
-    let options = Options { keep, ..Options::default() };
-    compose::compose(&graph, &Settings::default(), &options).ok()
-}
-
-/// The outputs for the targets that have what an entry point needs.
-fn compiled(composed: &Composed, entry: &str) -> Option<Unit> {
-    let text = TextForms { composed, lean: composed };
-    let made = |targets: &[Target]| compile(&text, entry, targets, &Linker::new(targets)).ok();
-    if let Some(made) = made(Target::ALL) {
-        return Some(made.unit);
-    }
-    let mut units = Target::ALL.iter().filter_map(|target| Some(made(&[*target])?.unit));
-    let mut first = units.next()?;
-    first.targets.extend(units.flat_map(|unit| unit.targets));
-    Some(first)
-}
-
 /// Writes the outputs and has the validators look at them.
-pub fn judge_units(
+pub fn validate_units(
     suite: &str,
     named: impl IntoIterator<Item = (String, Units)>,
 ) -> Result<OutputTable, CommandFailure> {

@@ -8,9 +8,9 @@ use lamplight::diagnostic::Diagnostic;
 use super::Program;
 use xtask::CommandFailure;
 
-/// One line for each suite: its name, its commit or `any`, the count of programs, of those wrongly
-/// refused, of those wrongly accepted, and of those with wrong values. Lines that begin with `outputs:`
-/// have the count of outputs and of those that validators refuse. A comment begins with `#`.
+/// One line for each suite: its name, its commit or `any`, and the counts of [`WORDS`]. Lines that begin
+/// with `outputs:` have the count of outputs and of those that validators refuse. A comment begins with
+/// `#`.
 const EXPECTED: &str = include_str!("expected.txt");
 
 /// How many causes are printed.
@@ -97,22 +97,30 @@ impl Table {
     pub fn compare(&self, suite: &str, commit: &str) -> Result<Comparison, CommandFailure> {
         let wrong = [&self.wrongly_refused, &self.wrongly_accepted, &self.wrong_values];
         let [refused, accepted, values] = wrong.map(count);
-        let words = "programs, wrongly refused, wrongly accepted, wrong values";
-        let found = [self.programs, refused, accepted, values];
-        compare_counts(suite, commit, words, &found)
+        let counts = |reasons: &BTreeMap<String, usize>| reasons.values().sum();
+        let (chosen, not_run) = (counts(&self.chosen), counts(&self.not_run));
+        let least = [self.programs, self.rows];
+        let most = [refused, accepted, values, chosen, not_run];
+        compare_counts(suite, commit, WORDS, (&least, &most))
     }
 }
 
 /// The text for the reader, or the counts that are worse than expected.
 pub type Comparison = Result<String, String>;
 
-/// Compares counts with a line of `expected.txt`: the first should not be less, the others not more.
+/// The counts of a suite, in the order of a line.
+const WORDS: &str = "programs, right rows of values, wrongly refused, wrongly accepted, wrong values, \
+                     accepted on purpose, not run";
+
+/// Compares counts with a line of `expected.txt`: those that should be at least as many, and those that
+/// should be at most.
 pub fn compare_counts(
     suite: &str,
     commit: &str,
     words: &str,
-    found: &[usize],
+    (least, most): (&[usize], &[usize]),
 ) -> Result<Comparison, CommandFailure> {
+    let found = [least, most].concat();
     let Some((line, expected)) = expected_of(suite, commit)? else {
         let counts: Vec<String> = found.iter().map(usize::to_string).collect();
         let line = format!("{suite} {commit} {}", counts.join(" "));
@@ -123,8 +131,9 @@ pub fn compare_counts(
         return Err(CommandFailure::input(message));
     }
     let message = format!("{line}: {words}: {found:?}, but expected.txt has {expected:?}");
-    let is_more = |at: usize| found[at] > expected[at];
-    let is_worse = found[0] < expected[0] || (1..found.len()).any(is_more);
+    let (floor, ceiling) = expected.split_at(least.len());
+    let is_worse = least.iter().zip(floor).any(|(found, expected)| found < expected)
+        || most.iter().zip(ceiling).any(|(found, expected)| found > expected);
     Ok(match (found == expected, is_worse) {
         (true, _) => Ok(format!("{line}: as expected")),
         (false, true) => Err(message),

@@ -9,17 +9,17 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use lamplight::bundle::{Language, Target};
-use lamplight::compose::{self, Composed, Options};
-use lamplight::diagnostic::{Diagnostic, Diagnostics, Severity};
+use lamplight::bundle::Target;
+use lamplight::compose::{Composed, Options};
+use lamplight::diagnostic::{Diagnostic, Severity};
 use lamplight::generate::entry_points;
 use lamplight::link::{Linker, TextForms, compile};
-use lamplight::permute::Settings;
-use lamplight::resolve::{self, Packages};
-use lamplight::source::SourceSet;
+use lamplight_validate::on_large_stack;
+use rayon::prelude::*;
 
+use super::commit_of;
+use super::compiled::composed_wgsl;
 use super::folder::files_below;
-use super::{commit_of, in_parallel};
 use xtask::process::root;
 use xtask::{CommandFailure, CommandResult};
 
@@ -67,7 +67,8 @@ pub fn run(arguments: &[String]) -> CommandResult {
 
 fn read_project(folder: &Path) -> Result<Project, CommandFailure> {
     let files = files_below(folder, "wgsl")?;
-    let outcomes = in_parallel(&files, 2, |file| outcome_of(file));
+    let outcomes: Vec<_> =
+        on_large_stack(|| files.par_iter().map(|file| outcome_of(file)).collect());
     let named = |(file, outcome): (&PathBuf, Result<Outcome, CommandFailure>)| {
         let name = file.strip_prefix(folder).unwrap_or(file).display().to_string();
         outcome.map(|outcome| (name, outcome))
@@ -84,7 +85,7 @@ fn outcome_of(file: &Path) -> Result<Outcome, CommandFailure> {
     }
     let text = std::fs::read_to_string(file)
         .map_err(|error| CommandFailure::input(format!("`{}`: {error}", file.display())))?;
-    Ok(match composed(&text) {
+    Ok(match composed_wgsl(&text, Options::default().keep) {
         Ok(composed) => compiled(&composed),
         Err(errors) => refused(&errors),
     })
@@ -106,13 +107,6 @@ fn refusal_of_tint(file: &Path) -> Result<Option<String>, CommandFailure> {
     let printed = String::from_utf8_lossy(&output.stderr).into_owned();
     let line = printed.lines().find_map(|line| line.split_once("error: "));
     Ok(Some(line.map_or_else(|| "refused".to_owned(), |(_, message)| message.to_owned())))
-}
-
-fn composed(text: &str) -> Result<Composed, Diagnostics> {
-    let packages = Packages::of_text("shader.wgsl", text.to_owned());
-    let mut sources = SourceSet::default();
-    let graph = resolve::load(&mut sources, &packages, "shader.wgsl", Language::Wesl)?;
-    compose::compose(&graph, &Settings::default(), &Options::default())
 }
 
 /// Compiles every entry point for every target.
