@@ -7,6 +7,7 @@
 
 mod body;
 mod draft;
+mod flow;
 mod names;
 mod numbers;
 mod outside;
@@ -46,9 +47,9 @@ const BATCH: u64 = 64;
 /// How many percent of the programs the crate may refuse. The generator does not know every rule.
 const REFUSED: usize = 10;
 /// How many cases are excused at most, in percent of the programs: stages that a driver draws wrong
-/// until their ids are renumbered, and programs with an unused function that naga refuses. Each
-/// kind occurs about once in several thousand programs.
-const EXCUSED: usize = 1;
+/// until their ids are renumbered, and programs with an unused function that naga refuses. Of 600
+/// programs with loops that have a `continuing` block, SwiftShader draws eight stages so.
+const EXCUSED: usize = 3;
 
 pub fn tests() -> Vec<Trial> {
     vec![Trial::test("link::random", || {

@@ -11,6 +11,9 @@ pub struct Local {
     pub name: String,
     pub ty: Type,
     pub is_mutable: bool,
+    /// The variable of the function that it is, or that it points into. A call is given at most one
+    /// pointer into each.
+    pub root: Option<String>,
 }
 
 /// A function that is being written.
@@ -27,9 +30,23 @@ pub struct Body<'d> {
     pub used: BTreeSet<String>,
     /// How many functions may be called, from the first one on.
     pub callable: usize,
+    /// What `return` gives; `None` where there must be none.
+    pub result: Option<Type>,
+    /// How many loops are around a statement that may leave the innermost.
+    pub loops: usize,
 }
 
 impl Local {
+    /// What no statement changes by its name.
+    pub fn fixed(name: String, ty: Type) -> Self {
+        Self { name, ty, is_mutable: false, root: None }
+    }
+
+    /// A variable of the function, or what a parameter points to.
+    pub fn variable(name: String, ty: Type) -> Self {
+        Self { root: Some(name.clone()), name, ty, is_mutable: true }
+    }
+
     /// The name, without the `(*...)` that dereferences a pointer.
     pub fn plain(&self) -> &str {
         self.name.trim_matches(['(', '*', ')'])
@@ -50,6 +67,8 @@ impl<'d> Body<'d> {
             given,
             used: BTreeSet::new(),
             callable,
+            result: None,
+            loops: 0,
         }
     }
 
@@ -87,7 +106,7 @@ impl<'d> Body<'d> {
         self.draft.random.below(bound)
     }
 
-    fn glsl(&self) -> bool {
+    pub fn is_glsl(&self) -> bool {
         self.draft.spelling.is_glsl()
     }
 
@@ -150,7 +169,7 @@ impl<'d> Body<'d> {
             // naga's GLSL front end refuses a component of a column with an index that is not
             // constant.
             Type::Matrix(columns, rows) => {
-                let last = if self.glsl() { "[1]".to_owned() } else { at(*columns) };
+                let last = if self.is_glsl() { "[1]".to_owned() } else { at(*columns) };
                 deeper(format!("{path}{last}"), &Type::Vector(*rows, Scalar::Float));
                 deeper(format!("{path}[0]"), &Type::Vector(*rows, Scalar::Float));
             }
@@ -226,7 +245,7 @@ impl<'d> Body<'d> {
         let name = self.name();
         let ty = self.draft.spell(&Type::Struct(number));
         let declared = self.draft.spelling.declared(&name, &ty);
-        let var = if self.glsl() { "" } else { "var " };
+        let var = if self.is_glsl() { "" } else { "var " };
         self.lines.push(format!("{var}{declared};"));
         for member in &of.members {
             let value = self.value(&member.ty, depth.min(1));
@@ -237,7 +256,7 @@ impl<'d> Body<'d> {
             };
             self.lines.push(line);
         }
-        self.locals.push(Local { name: name.clone(), ty: Type::Struct(number), is_mutable: true });
+        self.locals.push(Local::variable(name.clone(), Type::Struct(number)));
         name
     }
 
@@ -278,8 +297,8 @@ impl<'d> Body<'d> {
                 let other = self.value(&ty, depth);
                 format!("mix({one}, {other}, clamp({one}, {name}(0.0), {name}(1.0)))")
             }
-            3 if !self.glsl() && self.has("modf") => format!("modf({one}).fract"),
-            4 if self.draft.is_modern && !self.glsl() && self.has("frexp") => {
+            3 if !self.is_glsl() && self.has("modf") => format!("modf({one}).fract"),
+            4 if self.draft.is_modern && !self.is_glsl() && self.has("frexp") => {
                 format!("frexp({one}).fract")
             }
             _ => {
@@ -351,6 +370,11 @@ impl<'d> Body<'d> {
         format!("({one} {operator} {other})")
     }
 
+    /// A condition that calls nothing, for places where no statement can stand before it.
+    pub fn plain_condition(&mut self) -> String {
+        self.condition(0)
+    }
+
     /// A lookup in a texture of the module or in one that is a parameter.
     pub fn sampled(&mut self, depth: usize) -> Option<String> {
         let hidden =
@@ -365,7 +389,7 @@ impl<'d> Body<'d> {
         let size = if *kind == TextureKind::Cube { 3 } else { 2 };
         let at = self.value(&Type::Vector(size, Scalar::Float), depth);
         self.used.extend([name.clone(), sampler.clone()]);
-        let glsl = self.glsl();
+        let glsl = self.is_glsl();
         Some(match (kind, glsl) {
             (TextureKind::Plain, false) if self.below(4) == 0 && self.has("textureLoad") => {
                 let size = format!("vec2i(textureDimensions({name}))");

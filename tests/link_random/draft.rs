@@ -70,12 +70,18 @@ pub struct Draft {
     pub built_ins: BTreeSet<&'static str>,
     /// The next free binding.
     pub bindings: u32,
+    /// The constants that a pipeline may set, and that always exist.
+    pub overrides: Vec<(String, Type)>,
+    /// The last id of them.
+    pub ids: u32,
     /// The program has functions that GLSL 3.30 and GLSL ES 3.00 lack, so they are not among its
     /// targets.
     pub is_modern: bool,
     /// The program has matrices of two rows in blocks. GLSL has another layout for them, so it is not
     /// among the targets.
     pub has_two_rows: bool,
+    /// The structure from the vertex to the fragment stage, which begins with the position.
+    pub carried: Option<usize>,
     /// The vertex stage draws a triangle over the whole frame. Otherwise its position is random.
     pub places_corners: bool,
 }
@@ -99,8 +105,11 @@ impl Draft {
             items: Vec::new(),
             built_ins: BTreeSet::new(),
             bindings: 0,
+            overrides: Vec::new(),
+            ids: 0,
             is_modern,
             has_two_rows,
+            carried: None,
             places_corners,
         }
     }

@@ -64,7 +64,11 @@ impl Program {
             Language::Wesl => {
                 // The order of declarations has no meaning in WGSL.
                 draft.random.shuffle(&mut draft.items);
-                draft.items.concat()
+                let directive = match draft.random.chance(20) {
+                    true => "diagnostic(off, derivative_uniformity);\n",
+                    false => "",
+                };
+                directive.to_owned() + &draft.items.concat()
             }
         };
         let places_corners = draft.places_corners;
@@ -175,12 +179,17 @@ impl Draft {
     fn constant(&mut self) {
         let ty = self.constant_type();
         let name = self.name();
+        let is_scalar = matches!(ty, Type::Scalar(_));
+        let overrides = is_scalar && !self.spelling.is_glsl() && self.random.chance(60);
         let mut one = || {
+            if overrides {
+                return self.overridable(&name, &ty);
+            }
             let value = self.literal(&ty);
             let spelt = self.spell(&ty);
             let declared = self.spelling.declared(&name, &spelt);
             match self.spelling.is_glsl() {
-                false if self.random.chance(50) && !matches!(ty, Type::Scalar(_)) => {
+                false if self.random.chance(50) && !is_scalar => {
                     format!("const {name} = {value};\n")
                 }
                 _ => format!("const {declared} = {value};\n"),
@@ -199,7 +208,37 @@ impl Draft {
             _ => (some, None),
         };
         self.items.push(text);
+        if overrides && when.is_none() {
+            self.overrides.push((name.clone(), ty.clone()));
+        }
         self.values.push(Value { root: name.clone(), path: name, ty, is_mutable: false, when });
+    }
+
+    /// A constant that a pipeline may set. Its value may be computed from others.
+    fn overridable(&mut self, name: &str, ty: &Type) -> String {
+        let id = match self.random.chance(30) {
+            true => {
+                self.ids += 1;
+                format!("@id({}) ", self.ids)
+            }
+            false => String::new(),
+        };
+        let (value, spelt) = (self.from_overrides(ty), self.spell(ty));
+        format!("{id}override {name}: {spelt} = {value};\n")
+    }
+
+    /// A literal, or a value that is computed from constants of the pipeline.
+    fn from_overrides(&mut self, ty: &Type) -> String {
+        let literal = self.literal(ty);
+        let same = self.overrides.iter().filter(|(_, of)| of == ty).map(|(name, _)| name.clone());
+        let same: Vec<String> = same.collect();
+        match same.is_empty() || self.random.chance(50) {
+            true => literal,
+            false => {
+                let operator = self.random.pick(&["+", "*"]);
+                format!("{} {operator} {literal}", self.random.pick(&same))
+            }
+        }
     }
 
     fn private(&mut self) {
@@ -207,7 +246,7 @@ impl Draft {
         let (name, spelt) = (self.name(), self.spell(&ty));
         let declared = self.spelling.declared(&name, &spelt);
         let value = match self.random.chance(60) || self.spelling.is_glsl() {
-            true => format!(" = {}", self.literal(&ty)),
+            true => format!(" = {}", self.from_overrides(&ty)),
             false => String::new(),
         };
         let var = if self.spelling.is_glsl() { "" } else { "var<private> " };
@@ -261,13 +300,17 @@ impl Draft {
             list.push(body.parameter(parameter));
         }
         body.seeded();
+        body.result = Some(result.clone());
         body.statements(2);
-        let value = body.value(result, 2);
+        let (value, attribute) = (body.value(result, 2), body.attribute());
         let lines = body.lines.join("\n");
         let list = list.join(", ");
         match glsl {
             true => format!("{spelt} {name}({list}) {{\n{lines}\nreturn {value};\n}}\n"),
-            false => format!("fn {name}({list}) -> {spelt} {{\n{lines}\nreturn {value};\n}}\n"),
+            false => {
+                let head = format!("{attribute}fn {name}({list}) -> {spelt}");
+                format!("{head} {{\n{lines}\nreturn {value};\n}}\n")
+            }
         }
     }
 }
@@ -281,7 +324,10 @@ impl Body<'_> {
             Parameter::Value(ty) => {
                 let spelt = self.draft.spell(ty);
                 let declared = self.draft.spelling.declared(&name, &spelt);
-                self.locals.push(Local { name, ty: ty.clone(), is_mutable: glsl });
+                self.locals.push(match glsl {
+                    true => Local::variable(name, ty.clone()),
+                    false => Local::fixed(name, ty.clone()),
+                });
                 declared
             }
             Parameter::Pointer(ty) => {
@@ -292,7 +338,7 @@ impl Body<'_> {
                     false => format!("{name}: ptr<function, {spelt}>"),
                 };
                 let name = if glsl { name } else { format!("(*{name})") };
-                self.locals.push(Local { name, ty: ty.clone(), is_mutable: true });
+                self.locals.push(Local::variable(name, ty.clone()));
                 text
             }
             Parameter::Texture => {
@@ -315,13 +361,26 @@ impl Body<'_> {
         for ty in [FLOAT, INT, UINT] {
             let is_it = |local: &Local| local.ty == ty;
             if !self.locals.iter().any(is_it) {
-                let (name, value) = (self.name(), self.literal(&ty));
+                let (name, value) = (self.name(), self.first(&ty));
                 let spelt = self.draft.spelling.ty(&ty, &[]);
                 let declared = self.draft.spelling.declared(&name, &spelt);
                 let var = if self.draft.spelling.is_glsl() { "" } else { "var " };
                 self.lines.push(format!("{var}{declared} = {value};"));
-                self.locals.push(Local { name, ty, is_mutable: true });
+                self.locals.push(Local::variable(name, ty));
             }
         }
+    }
+
+    /// The initial value of a variable: now and then the largest or the smallest of its type.
+    fn first(&mut self, ty: &Type) -> String {
+        if !self.draft.random.chance(8) {
+            return self.literal(ty);
+        }
+        let extreme: &[&str] = match ty {
+            Type::Scalar(Scalar::Int) => &["2147483647", "(-2147483647 - 1)", "-1", "0"],
+            Type::Scalar(Scalar::Uint) => &["4294967295u", "2147483648u", "0u"],
+            _ => &["16777216.0", "-8388609.0", "1e-30", "0.0"],
+        };
+        self.draft.random.pick(extreme).to_string()
     }
 }

@@ -62,6 +62,7 @@ impl Draft {
         let position = ("@builtin(position)".to_owned(), FOUR, None);
         let all: Vec<_> = std::iter::once(position).chain(located.clone()).collect();
         let carried = self.interface(&all);
+        self.carried = Some(carried);
         let given = if self.random.chance(40) { Some(self.interface(&located)) } else { None };
         let drawn = self.drawn();
         self.functions();
@@ -93,10 +94,11 @@ impl Draft {
             ("@location(0)", Type::Vector(3, Scalar::Float)),
             ("@location(1)", FOUR),
             ("@builtin(vertex_index)", UINT),
+            ("@builtin(instance_index)", UINT),
         ] {
             let (name, spelt) = (body.name(), body.draft.spelling.ty(&ty, &[]));
             list.push(format!("{attribute} {name}: {spelt}"));
-            body.locals.push(Local { name, ty, is_mutable: false });
+            body.locals.push(Local::fixed(name, ty));
         }
         let index = body.locals[2].name.clone();
         body.seeded();
@@ -143,11 +145,12 @@ impl Draft {
         given: Option<When>,
     ) -> String {
         let (input, result) = (self.spell(&Type::Struct(taken)), drawn.map(Type::Struct));
+        let has_position = self.carried == Some(taken);
         let mut body = Body::new(self, given);
         body.used.insert(name.to_owned());
         let argument = body.name();
-        let local = Local { name: argument.clone(), ty: Type::Struct(taken), is_mutable: false };
-        body.locals.push(local);
+        body.locals.push(Local::fixed(argument.clone(), Type::Struct(taken)));
+        let more = body.built_ins(has_position);
         body.seeded();
         body.statements(2);
         let value = body.value(result.as_ref().unwrap_or(&FOUR), 3);
@@ -156,9 +159,8 @@ impl Draft {
             Some(ty) => self.spell(&ty),
             None => format!("@location(0) {}", self.spell(&FOUR)),
         };
-        format!(
-            "@fragment fn {name}({argument}: {input}) -> {result} {{\n{lines}\nreturn {value};\n}}\n"
-        )
+        let head = format!("@fragment fn {name}({argument}: {input}{more}) -> {result}");
+        format!("{head} {{\n{lines}\nreturn {value};\n}}\n")
     }
 
     /// Adds the inputs of a GLSL stage. Every function can read them.
@@ -239,6 +241,42 @@ impl Draft {
         }
         let corner = corner("vec4", "float", "gl_VertexIndex", "");
         self.glsl_main(&outputs, &format!("gl_Position = {corner};\n"));
+    }
+}
+
+impl Body<'_> {
+    /// Adds parameters of a fragment stage with values that are built in, and gives their text.
+    fn built_ins(&mut self, has_position: bool) -> String {
+        let mut all = vec![("front_facing", None)];
+        if !has_position {
+            all.push(("position", Some(FOUR)));
+        }
+        // GLSL 3.30 and GLSL ES 3.00 lack them.
+        if self.draft.is_modern {
+            all.extend([("sample_index", Some(UINT)), ("sample_mask", Some(UINT))]);
+        }
+        let mut text = String::new();
+        for (built_in, ty) in all {
+            if !self.draft.random.chance(25) {
+                continue;
+            }
+            let name = self.name();
+            let spelt = ty.as_ref().map_or("bool".to_owned(), |ty| self.draft.spell(ty));
+            let _ = write!(text, ", @builtin({built_in}) {name}: {spelt}");
+            match ty {
+                Some(ty) => self.locals.push(Local::fixed(name, ty)),
+                None => self.facing(&name),
+            }
+        }
+        text
+    }
+
+    /// Adds a number that depends on a condition by its name.
+    fn facing(&mut self, name: &str) {
+        // The name is in scope from here on.
+        self.used.insert(name.to_owned());
+        let number = self.declare(FLOAT, true);
+        self.lines.push(format!("if {name} {{ {number} += 0.5; }}"));
     }
 }
 

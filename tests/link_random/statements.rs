@@ -18,14 +18,16 @@ impl Body<'_> {
     }
 
     fn statement(&mut self, nesting: usize) {
-        match self.below(12) {
+        match self.below(16) {
             0..=3 => self.variable(),
             4 | 5 => self.assignment(),
             6 => self.either(),
             7 if nesting > 0 => self.branch(nesting),
-            8 if nesting > 0 => self.loops(nesting),
-            9 if nesting > 0 => self.switch(nesting),
-            10 if nesting > 0 => self.block("{", "}", nesting),
+            8 | 9 if nesting > 0 => self.loops(nesting),
+            10 if nesting > 0 => self.switch(nesting),
+            11 if nesting > 0 => self.block("{", "}", nesting),
+            12 => self.pointer(),
+            13 => self.early(),
             _ => self.changed_number(),
         }
     }
@@ -37,7 +39,7 @@ impl Body<'_> {
         self.declare(ty, is_mutable);
     }
 
-    fn declare(&mut self, ty: Type, is_mutable: bool) -> String {
+    pub fn declare(&mut self, ty: Type, is_mutable: bool) -> String {
         let value = self.value(&ty, DEPTH);
         let name = self.name();
         let glsl = self.draft.spelling.is_glsl();
@@ -53,11 +55,14 @@ impl Body<'_> {
             (false, false) => "let ",
         };
         self.lines.push(format!("{word}{declared} = {value};"));
-        self.locals.push(Local { name: name.clone(), ty, is_mutable });
+        self.locals.push(match is_mutable {
+            true => Local::variable(name.clone(), ty),
+            false => Local::fixed(name.clone(), ty),
+        });
         name
     }
 
-    fn assignment(&mut self) {
+    pub fn assignment(&mut self) {
         let ty = self.draft.some_type();
         if let Some(line) = self.assigned(&ty) {
             self.lines.push(line);
@@ -75,7 +80,7 @@ impl Body<'_> {
         Some(format!("{path} = {value};"))
     }
 
-    fn changed_number(&mut self) {
+    pub fn changed_number(&mut self) {
         let ty = self.draft.random.pick(&[FLOAT, INT, FLOAT]).clone();
         let value = self.value(&ty, DEPTH);
         let paths = self.paths(&ty, true);
@@ -99,42 +104,6 @@ impl Body<'_> {
             let text = self.draft.spelling.either(when, &some, Some(&other));
             self.lines.push(text);
         }
-    }
-
-    fn branch(&mut self, nesting: usize) {
-        let condition = self.condition(1);
-        self.block(&format!("if {condition} {{"), "}", nesting);
-        if self.below(2) == 0 {
-            self.block("else {", "}", nesting);
-        }
-    }
-
-    fn loops(&mut self, nesting: usize) {
-        let name = self.name();
-        let ty = if self.draft.spelling.is_glsl() { "int" } else { "var" };
-        let most = 1 + self.below(3);
-        self.locals.push(Local { name: name.clone(), ty: INT, is_mutable: false });
-        self.block(&format!("for ({ty} {name} = 0; {name} < {most}; {name}++) {{"), "}", nesting);
-        self.locals.pop();
-    }
-
-    fn switch(&mut self, nesting: usize) {
-        let value = self.value(&INT, 2);
-        let glsl = self.draft.spelling.is_glsl();
-        self.lines.push(format!("switch ({value}) {{"));
-        let end = if glsl { "} break;" } else { "}" };
-        self.block("case 1: {", end, nesting);
-        self.block(if glsl { "case 3: {" } else { "case 2, 3: {" }, end, nesting);
-        self.block("default: {", end, nesting);
-        self.lines.push("}".to_owned());
-    }
-
-    fn block(&mut self, head: &str, end: &str, nesting: usize) {
-        self.lines.push(head.to_owned());
-        let known = self.locals.len();
-        self.statements(nesting - 1);
-        self.locals.truncate(known);
-        self.lines.push(end.to_owned());
     }
 
     /// Adds a call of a function, and gives the name of the variable with its result.
@@ -163,7 +132,7 @@ impl Body<'_> {
         let other = format!("{kept} = {name}({arguments});");
         let text = self.draft.spelling.either(*when, &some, Some(&other));
         self.lines.push(text);
-        self.locals.push(Local { name: kept.clone(), ty: ty.clone(), is_mutable: true });
+        self.locals.push(Local::variable(kept.clone(), ty.clone()));
         Some(kept)
     }
 
@@ -176,30 +145,16 @@ impl Body<'_> {
         let declared =
             if glsl { self.draft.spelling.declared(&kept, &spelt) } else { format!("let {kept}") };
         self.lines.push(format!("{declared} = {call};"));
-        self.locals.push(Local { name: kept.clone(), ty: ty.clone(), is_mutable: false });
+        self.locals.push(Local::fixed(kept.clone(), ty.clone()));
         kept
     }
 
     fn arguments(&mut self, parameters: &[Parameter]) -> Option<String> {
-        let mut arguments = Vec::new();
+        let (mut arguments, mut roots) = (Vec::new(), Vec::new());
         for parameter in parameters {
             match parameter {
                 Parameter::Value(ty) => arguments.push(self.value(ty, 1)),
-                Parameter::Pointer(ty) => {
-                    let is_it = |local: &&Local| local.is_mutable && local.ty == *ty;
-                    let known: Vec<String> =
-                        self.locals.iter().filter(is_it).map(|local| local.name.clone()).collect();
-                    let is_pointer = |name: &str| name.starts_with("(*");
-                    let name = match known.is_empty() {
-                        true => self.declare(ty.clone(), true),
-                        false => self.draft.random.pick(&known).clone(),
-                    };
-                    let and = if self.draft.spelling.is_glsl() { "" } else { "&" };
-                    arguments.push(match is_pointer(&name) {
-                        true => name.trim_matches(['(', '*', ')']).to_owned(),
-                        false => format!("{and}{name}"),
-                    });
-                }
+                Parameter::Pointer(ty) => arguments.push(self.pointed(ty, &mut roots)),
                 Parameter::Texture => {
                     let Texture { name, sampler, .. } = self.plain_texture()?;
                     self.used.extend([name.clone(), sampler.clone()]);
@@ -208,6 +163,32 @@ impl Body<'_> {
             }
         }
         Some(arguments.join(", "))
+    }
+
+    /// The argument for a parameter that is a pointer, which leads into another variable than the
+    /// pointers before it.
+    fn pointed(&mut self, ty: &Type, roots: &mut Vec<String>) -> String {
+        let is_free = |root: &String| !roots.contains(root);
+        let is_it = |local: &&Local| {
+            local.is_mutable && local.ty == *ty && local.root.as_ref().is_some_and(is_free)
+        };
+        let known: Vec<Local> = self.locals.iter().filter(is_it).cloned().collect();
+        let (name, root) = match known.is_empty() {
+            true => {
+                let name = self.declare(ty.clone(), true);
+                (name.clone(), Some(name))
+            }
+            false => {
+                let Local { name, root, .. } = self.draft.random.pick(&known).clone();
+                (name, root)
+            }
+        };
+        roots.extend(root);
+        match (name.starts_with("(*"), self.is_glsl()) {
+            (true, _) => name.trim_matches(['(', '*', ')']).to_owned(),
+            (false, true) => name,
+            (false, false) => format!("&{name}"),
+        }
     }
 
     fn plain_texture(&mut self) -> Option<Texture> {

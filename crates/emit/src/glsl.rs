@@ -63,9 +63,11 @@ fn write_padded(
         defined.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
     let source = &EmitSource { module, info, ..*source };
     let options = writer_options(source, version, numbering)?;
+    // The entry point may be among what was renamed above.
+    let entry = source.module.entry_points.get(source.index).ok_or("there is no entry point")?;
     let pipeline = PipelineOptions {
         shader_stage: source.stage,
-        entry_point: source.entry.to_owned(),
+        entry_point: entry.name.clone(),
         multiview: None,
     };
     let mut text = BoundedText::default();

@@ -83,6 +83,7 @@ impl Corners {
             {
                 let word = match (binding, place) {
                     (Some(Binding::BuiltIn(BuiltIn::VertexIndex)), _) => index,
+                    (Some(Binding::BuiltIn(BuiltIn::InstanceIndex)), _) => 0,
                     (_, Some((location, component))) => {
                         attribute_word(&ready.mesh, index, *location, *component)
                     }

@@ -19,6 +19,10 @@ pub enum InterfaceRole {
     FrontFacing,
     VertexIndex,
     InstanceIndex,
+    /// The number of the sample, of which a pixel has one.
+    SampleIndex,
+    /// The samples that are covered, as an input.
+    SampleMask,
     /// Memory that the threads of a threadgroup share. It has no attribute.
     Threadgroup,
     /// A number that an invocation of a compute stage is given, or three of them.
@@ -74,6 +78,9 @@ impl Interface {
         }
         let output =
             if returned == "void" { Vec::new() } else { struct_members(&tokens, returned)? };
+        if let Some(mask) = output.iter().find(|part| part.role == InterfaceRole::SampleMask) {
+            return Err(format!("`{}` is a `sample_mask` that is written", mask.name));
+        }
         Ok(Self { stage, name: name.to_owned(), parameters, input, output })
     }
 
@@ -178,6 +185,8 @@ fn attribute_role(attribute: &MslAttribute<'_>) -> Option<InterfaceRole> {
         "front_facing" => Some(InterfaceRole::FrontFacing),
         "vertex_id" => Some(InterfaceRole::VertexIndex),
         "instance_id" => Some(InterfaceRole::InstanceIndex),
+        "sample_id" => Some(InterfaceRole::SampleIndex),
+        "sample_mask" => Some(InterfaceRole::SampleMask),
         "thread_position_in_grid" => Some(InterfaceRole::Invocation("global")),
         "thread_position_in_threadgroup" => Some(InterfaceRole::Invocation("local")),
         "thread_index_in_threadgroup" => Some(InterfaceRole::Invocation("index")),

@@ -437,6 +437,9 @@ fn argument_text(part: &InterfaceMember, index: usize) -> String {
         InterfaceRole::FrontFacing => "given.front != 0".to_owned(),
         InterfaceRole::VertexIndex => "given.vertex_index".to_owned(),
         InterfaceRole::InstanceIndex => "given.instance_index".to_owned(),
+        // A pixel has one sample, which a fragment covers.
+        InterfaceRole::SampleIndex => "0u".to_owned(),
+        InterfaceRole::SampleMask => "1u".to_owned(),
         InterfaceRole::Location(_) | InterfaceRole::Depth => "{}".to_owned(),
     }
 }
