@@ -315,10 +315,16 @@ fn chosen_outputs(
         let (Some(text), Some(output)) = (text, output) else {
             return Err(format!("a unit has no output for {target}").into());
         };
-        let is_new = seen.add(std::str::from_utf8(&text.bytes)?).line;
-        if is_new || index.is_multiple_of(distance) {
-            found.push((*hash, unit, output));
+        let text = std::str::from_utf8(&text.bytes)?;
+        if seen.add(text).line {
+            found.push((false, text, (*hash, unit, output)));
+        } else if index.is_multiple_of(distance) {
+            found.push((true, text, (*hash, unit, output)));
         }
     }
-    Ok(found)
+    // A later output often has the lines of several before it.
+    let mut seen = validators::SeenText::default();
+    found.reverse();
+    found.retain(|(is_at_distance, text, _)| seen.add(text).line || *is_at_distance);
+    Ok(found.into_iter().map(|(_, _, output)| output).collect())
 }

@@ -35,7 +35,7 @@ use run::{Ran, Runnable, Runner};
 use same::{Finding, Output, Verdict};
 
 /// How many programs the tests make, and those of the night.
-const PROGRAMS: [u64; 2] = [100, 200];
+const PROGRAMS: [u64; 2] = [200, 400];
 /// The seed of the first program.
 const SEED: u64 = 1;
 /// The external validators are given every 20th program.

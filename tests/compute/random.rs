@@ -30,7 +30,7 @@ use program::Program;
 use run::{Finding, Runner};
 
 /// How many programs the tests make by day, and at night.
-const PROGRAMS: [u64; 2] = [40, 400];
+const PROGRAMS: [u64; 2] = [100, 400];
 /// The seed of the first program.
 const SEED: u64 = 1;
 /// How many programs are compiled and run together.

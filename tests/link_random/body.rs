@@ -387,9 +387,14 @@ impl<'d> Body<'d> {
         let texture = self.draft.random.pick(&all).clone();
         let Texture { name, sampler, kind } = &texture;
         let size = if *kind == TextureKind::Cube { 3 } else { 2 };
-        let at = self.value(&Type::Vector(size, Scalar::Float), depth);
+        let mut at = self.value(&Type::Vector(size, Scalar::Float), depth);
         self.used.extend([name.clone(), sampler.clone()]);
         let glsl = self.is_glsl();
+        if *kind == TextureKind::Cube {
+            // On an edge of the cube, either face may be read.
+            let vector = self.draft.spelling.ty(&Type::Vector(3, Scalar::Float), &[]);
+            at = format!("({at} + {vector}(0.0117, 0.0431, 0.0873))");
+        }
         Some(match (kind, glsl) {
             (TextureKind::Plain, false) if self.below(4) == 0 && self.has("textureLoad") => {
                 let size = format!("vec2i(textureDimensions({name}))");

@@ -82,13 +82,11 @@ impl<'p> Body<'p> {
         Some((path, self.named[at].clone()))
     }
 
-    /// A number without a sign for indices. It is known only while the shader runs: naga stops where
-    /// it writes SPIR-V of an index from overrides alone into a constant list.
+    /// A number without a sign for indices.
     fn index(&mut self) -> String {
         let scalars: Vec<String> = self
             .named
             .iter()
-            .filter(|one| !one.is_constant)
             .filter_map(|one| match one.ty {
                 Ty::Scalar(Scalar::Uint) => Some(one.path.clone()),
                 Ty::Scalar(Scalar::Int) => Some(format!("u32({})", one.path)),

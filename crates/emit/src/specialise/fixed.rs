@@ -15,6 +15,7 @@ use naga::{
     Override, ShaderStage, Span, StructMember, Type, TypeInner,
 };
 
+use super::computed::compute_in_statements;
 use super::{isolate, literal_of};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_validate::{Validated, info_unchecked, operands};
@@ -401,7 +402,11 @@ fn fixed_module(
 }
 
 fn put_literals(function: &mut Function, fixed: &BTreeMap<Handle<Override>, Literal>) {
-    function.expressions.iter_mut().for_each(|(_, expression)| put_literal(expression, fixed));
+    let names_one = |(_, expression): (_, &Expression)| matches!(expression, Expression::Override(handle) if fixed.contains_key(handle));
+    if function.expressions.iter().any(names_one) {
+        function.expressions.iter_mut().for_each(|(_, expression)| put_literal(expression, fixed));
+        compute_in_statements(function);
+    }
 }
 
 fn put_literal(expression: &mut Expression, fixed: &BTreeMap<Handle<Override>, Literal>) {

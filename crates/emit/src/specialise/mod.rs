@@ -5,6 +5,7 @@
 //! where each variable becomes what the language has for overrides: a specialisation constant in
 //! SPIR-V, a function constant in MSL, a macro elsewhere.
 
+mod computed;
 mod fixed;
 mod kept;
 mod spirv;
