@@ -13,10 +13,16 @@ mod scan;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
-use scan::{Declared, DeclaredKind, Scanned};
+use scan::{Declared, DeclaredKind, Loose, Scanned};
 
 /// How the lines begin.
 const LINE: &str = "#pragma lamplight_number ";
+
+/// The word of a member of the block of loose uniforms, whose lines are in the order of the members.
+const MEMBER: &str = "member";
+
+/// The size of a member whose length depends on the permutation.
+const OPEN: &str = "open";
 
 /// What a number is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -159,6 +165,8 @@ fn add_bindings(lines: &mut [String; 2], stages: &[Scanned<'_>; 2]) {
         let count = declared.samplers;
         samplers.entry(declared.name).or_insert_with(|| used.take(declared.group, count));
     }
+    let members = uniform_members(stages);
+    let shared = members.as_ref().map(|_| used.take(0, 1));
     for (lines, stage) in lines.iter_mut().zip(stages) {
         let mut known = BTreeSet::new();
         for declared in stage.of_kind(DeclaredKind::Resource) {
@@ -172,38 +180,98 @@ fn add_bindings(lines: &mut [String; 2], stages: &[Scanned<'_>; 2]) {
                 add_line(lines, NumberOf::Sampler, declared.name, *first);
             }
         }
-        if stage.has_loose_uniforms {
-            add_line(lines, NumberOf::Uniforms, "-", used.take(0, 1));
+        if !stage.loose.is_empty() {
+            let binding = shared.unwrap_or_else(|| used.take(0, 1));
+            add_line(lines, NumberOf::Uniforms, "-", binding);
+            members.iter().flatten().for_each(|member| add_member(lines, member));
         }
     }
 }
 
+fn add_member(lines: &mut String, member: &Loose<'_>) {
+    let Loose { name, ty, lengths, size, open, is_known: _ } = member;
+    let size = if *open { OPEN.to_owned() } else { size.to_string() };
+    let lengths: String = lengths.iter().map(|length| format!(" {length}")).collect();
+    let _ = writeln!(lines, "{LINE}{MEMBER} {name} {size} {ty}{lengths}");
+}
+
+/// The members of the block of loose uniforms, in the order of both stages. An array whose length
+/// depends on the permutation is the last one, so that it moves no other; where there are two of
+/// these, or a name has several sizes or a type that is not found, each stage has a block of its own.
+fn uniform_members<'t>(stages: &[Scanned<'t>; 2]) -> Option<Vec<Loose<'t>>> {
+    let mut found: Vec<Loose<'t>> = Vec::new();
+    for one in stages.iter().flat_map(|stage| &stage.loose) {
+        match found.iter().find(|other| other.name == one.name) {
+            None => found.push(one.clone()),
+            Some(other) if (other.size, other.open) == (one.size, one.open) => {}
+            Some(_) => return None,
+        }
+    }
+    found.sort_by_key(|one| one.open);
+    let opens = found.iter().filter(|one| one.open).count();
+    let is_known = found.iter().all(|one| one.is_known);
+    (!found.is_empty() && opens <= 1 && is_known).then_some(found)
+}
+
+/// A member of the block of loose uniforms.
+#[derive(Debug, Clone)]
+pub(crate) struct UniformMember {
+    pub(crate) name: String,
+    /// Its size by the rules of `std140`.
+    pub(crate) size: u32,
+    /// Its type without the lengths of arrays.
+    pub(crate) ty: String,
+    pub(crate) lengths: Vec<u32>,
+    /// Whether the length depends on the permutation. Then it is the last member.
+    pub(crate) open: bool,
+}
+
 /// The numbers in a text.
 #[derive(Debug, Default)]
-pub(crate) struct Numbers(BTreeMap<(NumberOf, String), u32>);
+pub(crate) struct Numbers {
+    numbers: BTreeMap<(NumberOf, String), u32>,
+    /// The members of the block of loose uniforms, if the program has one for both stages.
+    pub(crate) members: Vec<UniformMember>,
+}
 
 impl Numbers {
     pub(crate) fn of(text: &str) -> Self {
-        let lines = text.lines().rev().map_while(|line| line.strip_prefix(LINE));
-        let read = |line: &str| {
-            let mut words = line.split(' ');
-            let word = words.next()?;
-            let (of, _) = WORDS.iter().find(|(_, known)| *known == word)?;
-            let name = words.next()?.to_owned();
-            Some(((*of, name), words.next()?.parse().ok()?))
-        };
-        Self(lines.filter_map(read).collect())
+        let mut found = Self::default();
+        for line in text.lines().rev().map_while(|line| line.strip_prefix(LINE)) {
+            let words: Vec<&str> = line.split(' ').collect();
+            if words[0] == MEMBER {
+                found.members.extend(read_member(&words));
+            } else if let Some((key, number)) = read_number(&words) {
+                found.numbers.insert(key, number);
+            }
+        }
+        found.members.reverse();
+        found
     }
 
     /// A number, if the program has one for this.
     pub(crate) fn get(&self, of: NumberOf, name: &str) -> Option<u32> {
-        self.0.get(&(of, name.to_owned())).copied()
+        self.numbers.get(&(of, name.to_owned())).copied()
     }
 
     /// The binding of the block of loose uniforms.
     pub(crate) fn uniforms(&self) -> Option<u32> {
         self.get(NumberOf::Uniforms, "-")
     }
+}
+
+fn read_number(words: &[&str]) -> Option<((NumberOf, String), u32)> {
+    let [word, name, number] = words else { return None };
+    let (of, _) = WORDS.iter().find(|(_, known)| known == word)?;
+    Some(((*of, (*name).to_owned()), number.parse().ok()?))
+}
+
+fn read_member(words: &[&str]) -> Option<UniformMember> {
+    let [_, name, size, ty, lengths @ ..] = words else { return None };
+    let lengths = lengths.iter().map(|length| length.parse().ok()).collect::<Option<_>>()?;
+    let (name, ty, open) = ((*name).to_owned(), (*ty).to_owned(), *size == OPEN);
+    let size = if open { 0 } else { size.parse().ok()? };
+    Some(UniformMember { name, size, ty, lengths, open })
 }
 
 #[cfg(test)]
@@ -265,20 +333,48 @@ mod tests {
              uniform sampler2D height; uniform Material material; uniform vec3 lamp;\n\
              layout(binding = 0) uniform Scene { vec4 a; };",
         );
-        assert_eq!(
-            vertex,
-            ["binding height 1", "sampler height 5", "binding Camera 2", "uniforms - 8"]
+        let block = [
+            "uniforms - 8",
+            "member model 64 mat4",
+            "member material 16 Material",
+            "member lamp 12 vec3",
+        ];
+        let height = ["binding height 1", "sampler height 5"];
+        assert_eq!(vertex, [&height[..], &["binding Camera 2"], &block].concat());
+        let material = ["binding material 3", "sampler material 6"];
+        assert_eq!(fragment, [&height[..], &material, &block].concat());
+    }
+
+    /// What a permutation decides stands last, and sizes are those of all branches.
+    #[test]
+    fn uniforms_of_both_stages_are_one_block() {
+        let [vertex, fragment] = lines(
+            "#define BONES 4\n#ifndef LAMPS\n#define LAMPS 2\n#endif\n\
+             uniform mat3x4 bones[BONES]; uniform float k = 2.0, weights[2];\n\
+             #if LAMPS > 1\nuniform vec3 lamps[LAMPS];\n#endif",
+            "struct Fog {\n vec3 tint;\n#ifdef DENSE\n mat2 more;\n#endif\n float at; };\n\
+             uniform Fog fog[2]; uniform bool is_lit; uniform float k;",
         );
-        assert_eq!(
-            fragment,
-            [
-                "binding height 1",
-                "sampler height 5",
-                "binding material 3",
-                "sampler material 6",
-                "uniforms - 9"
-            ]
-        );
+        let expected = [
+            "uniforms - 0",
+            "member bones 192 mat3x4 4",
+            "member k 4 float",
+            "member weights 32 float 2",
+            "member fog 128 Fog 2",
+            "member is_lit 4 bool",
+            "member lamps open vec3 2",
+        ];
+        assert_eq!(vertex, expected);
+        assert_eq!(fragment, expected);
+    }
+
+    #[test]
+    fn other_uniforms_are_a_block_in_each_stage() {
+        let bindings = |vertex, fragment| lines(vertex, fragment).map(|lines| lines.join(", "));
+        let own = ["uniforms - 0", "uniforms - 1"].map(str::to_owned);
+        assert_eq!(bindings("uniform vec3 a;", "uniform vec4 a;"), own);
+        assert_eq!(bindings("uniform vec3 a[M];", "uniform vec4 b[N];"), own);
+        assert_eq!(bindings("uniform HIGHP vec3 a;", "uniform vec4 b;"), own);
     }
 
     #[test]

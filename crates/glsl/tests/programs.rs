@@ -50,10 +50,15 @@ const RESOURCES: &[(&str, &str)] = &[
     ("layout(std140) uniform Camera { vec4 eye; };", "eye.x"),
     ("uniform Material material;", "texture(material.map, vec2(0.5)).x * material.shine"),
     ("uniform float loose;", "loose"),
+    ("uniform mat3 turn;", "turn[1].x"),
+    ("uniform vec3 tint, more[SIZE];", "tint.x * more[1].y"),
+    ("uniform Scaled scaled[2];", "scaled[1].by[1].x"),
+    ("uniform vec4 many[AXIS];", "many[1].x"),
 ];
 
 const START: &str = "struct Pair { vec2 x; vec3 y; };\n\
                      struct Material { sampler2D map; float shine; };\n\
+                     struct Scaled { float one; mat2 by; vec3 at; };\n\
                      #define SIZE 2\n";
 
 /// One stage: the source with its branches, and the same without those that are not chosen.
@@ -90,7 +95,7 @@ fn write_stage(random: &mut Random, vertex: bool, given: &BTreeMap<&str, u32>) -
             let _ = writeln!(source, "{line}");
         }
         if is_chosen {
-            let _ = writeln!(chosen, "{}", line.replace("SIZE", "2"));
+            let _ = writeln!(chosen, "{}", line.replace("SIZE", "2").replace("AXIS", "3"));
             let target = if line.contains("out ") { &mut outputs } else { &mut body };
             let _ = writeln!(target, "    {used}");
         }
@@ -109,6 +114,8 @@ fn write_stage(random: &mut Random, vertex: bool, given: &BTreeMap<&str, u32>) -
 struct Interface {
     between: BTreeMap<u32, (String, String)>,
     bindings: BTreeMap<String, u32>,
+    /// Where each uniform outside of blocks lies.
+    offsets: BTreeMap<String, u32>,
 }
 
 fn interface(stage: Stage, text: &str) -> Result<Interface, Failed> {
@@ -138,7 +145,15 @@ fn interface(stage: Stage, text: &str) -> Result<Interface, Failed> {
             bindings.insert(format!("{}{suffix}", resource.name), binding);
         }
     }
-    Ok(Interface { between, bindings })
+    Ok(Interface { between, bindings, offsets: uniform_offsets(&module) })
+}
+
+fn uniform_offsets(module: &Module) -> BTreeMap<String, u32> {
+    let block = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("Uniforms"));
+    let Some((_, naga::Type { inner: TypeInner::Struct { members, .. }, .. })) = block else {
+        return BTreeMap::new();
+    };
+    members.iter().map(|one| (one.name.clone().unwrap_or_default(), one.offset)).collect()
 }
 
 /// Name, type and location of what a vertex shader returns, or of what a fragment shader takes.
@@ -193,7 +208,12 @@ fn stages_fit() -> Result<(), Failed> {
                 return Err(format!("seed {seed}: {taken:?} is at {at} and {location}").into());
             }
         }
-        for (name, binding) in vertex.bindings.iter().filter(|(name, _)| !name.is_empty()) {
+        for (name, offset) in &vertex.offsets {
+            if fragment.offsets.get(name).is_some_and(|other| other != offset) {
+                return Err(format!("seed {seed}: `{name}` lies at two places").into());
+            }
+        }
+        for (name, binding) in &vertex.bindings {
             if fragment.bindings.get(name).is_some_and(|other| other != binding) {
                 return Err(format!("seed {seed}: `{name}` has two bindings").into());
             }

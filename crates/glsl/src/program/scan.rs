@@ -1,8 +1,9 @@
 //! The declarations of files that are not preprocessed: all branches one after another.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::lexer::{Kind, Lexed, Token, mark, tokenize};
+use crate::types::{Type, named_type};
 
 /// The size of an array that is neither a number nor a constant.
 const OPEN_SIZE: u32 = 16;
@@ -33,13 +34,30 @@ pub(super) struct Declared<'t> {
     pub(super) group: u32,
 }
 
+/// A uniform outside of blocks.
+#[derive(Debug, Clone)]
+pub(super) struct Loose<'t> {
+    pub(super) name: &'t str,
+    pub(super) ty: &'t str,
+    /// The lengths of arrays, the outermost first.
+    pub(super) lengths: Vec<u32>,
+    /// Its size by the rules of `std140`.
+    pub(super) size: u32,
+    /// Whether a length may be another one in other permutations.
+    pub(super) open: bool,
+    /// Whether its type is the language's, or a structure of the files.
+    pub(super) is_known: bool,
+}
+
 /// What a stage declares, in the order of the files.
 #[derive(Debug, Default)]
 pub(super) struct Scanned<'t> {
     declared: Vec<Declared<'t>>,
-    pub(super) has_loose_uniforms: bool,
+    pub(super) loose: Vec<Loose<'t>>,
     structures: BTreeMap<&'t str, Parts>,
     sizes: BTreeMap<&'t str, u32>,
+    /// The macros among the sizes that other directives may change.
+    changing: BTreeSet<&'t str>,
 }
 
 /// What a type consists of.
@@ -50,14 +68,24 @@ struct Parts {
     combined: u32,
     /// Whether it has anything but textures and samplers.
     plain: bool,
+    /// Alignment and size of the rest by the rules of `std140`.
+    align: u32,
+    size: u32,
+    /// Whether the size depends on the permutation.
+    open: bool,
+}
+
+fn round_up(value: u32, align: u32) -> u32 {
+    value.div_ceil(align.max(1)).saturating_mul(align.max(1))
 }
 
 impl Parts {
     fn times(self, count: u32) -> Self {
-        let Self { locations, opaque, combined, plain } = self;
+        let Self { locations, opaque, combined, plain, align: _, size, open } = self;
         let times = |number: u32| number.saturating_mul(count);
         let (locations, opaque) = (times(locations), times(opaque));
-        Self { locations, opaque, combined: times(combined), plain }
+        let size = times(round_up(size, 16));
+        Self { locations, opaque, combined: times(combined), plain, align: 16, size, open }
     }
 
     fn with(self, other: Self) -> Self {
@@ -66,7 +94,16 @@ impl Parts {
             opaque: self.opaque.saturating_add(other.opaque),
             combined: self.combined.saturating_add(other.combined),
             plain: self.plain || other.plain,
+            align: self.align.max(other.align),
+            size: round_up(self.size, other.align).saturating_add(other.size),
+            open: self.open || other.open,
         }
+    }
+
+    /// The size of so many numbers of four bytes in a row.
+    fn of_numbers(count: u32) -> Self {
+        let align = if count == 3 { 16 } else { 4 * count };
+        Self { locations: 1, plain: true, align, size: 4 * count, ..Self::default() }
     }
 }
 
@@ -168,9 +205,7 @@ impl<'t> Scanned<'t> {
             .iter()
             .map(|text| {
                 let Lexed { tokens, comments: _, directives } = tokenize(text);
-                found
-                    .sizes
-                    .extend(directives.iter().filter_map(|at| definition(&text[at.range()])));
+                directives.iter().for_each(|at| found.directive(&text[at.range()]));
                 File { text, tokens }
             })
             .collect();
@@ -179,6 +214,18 @@ impl<'t> Scanned<'t> {
             files.iter().for_each(|file| found.read_file(file, pass));
         }
         found
+    }
+
+    /// Keeps the value of a macro, and the words of the other directives.
+    fn directive(&mut self, line: &'t str) {
+        if let Some((name, number)) = definition(line) {
+            if self.sizes.insert(name, number).is_some() {
+                self.changing.insert(name);
+            }
+            return;
+        }
+        let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
+        self.changing.extend(line.split(|letter| !is_part(letter)));
     }
 
     pub(super) fn of_kind(&self, kind: DeclaredKind) -> impl Iterator<Item = &Declared<'t>> {
@@ -206,7 +253,8 @@ impl<'t> Scanned<'t> {
             }
             return end_of_item(file, next);
         }
-        let of_type = self.sized(file, at + 1, self.parts_of(ty));
+        let behind_type = at + 1;
+        let of_type = self.sized(file, behind_type, self.parts_of(ty));
         let mut at = of_type.1;
         while let Some(name) = file.word(at) {
             if file.is(at + 1, "(") {
@@ -215,7 +263,16 @@ impl<'t> Scanned<'t> {
             let (parts, next) = self.sized(file, at + 1, of_type.0);
             match pass {
                 Pass::Structures => self.constant(file, name, next),
-                Pass::Declarations => self.variable(&qualifiers, name, parts),
+                Pass::Declarations => {
+                    self.variable(&qualifiers, name, parts);
+                    if qualifiers.uniform && parts.plain && !name.starts_with("gl_") {
+                        let mut lengths = self.lengths(file, at + 1);
+                        lengths.extend(self.lengths(file, behind_type));
+                        let Parts { size, open, .. } = parts;
+                        let is_known = named_type(ty).is_some() || self.structures.contains_key(ty);
+                        self.loose.push(Loose { name, ty, lengths, size, open, is_known });
+                    }
+                }
             }
             at = end_of_declarator(file, next);
             if !file.is(at, ",") {
@@ -269,7 +326,8 @@ impl<'t> Scanned<'t> {
         let Some(name) = file.word(at + 1) else { return at + 1 };
         let (parts, next) = self.members(file, at + 2);
         if pass == Pass::Structures {
-            self.structures.insert(name, parts);
+            let size = round_up(parts.size, 16);
+            self.structures.insert(name, Parts { align: 16, size, ..parts });
         }
         end_of_item(file, next)
     }
@@ -313,9 +371,21 @@ impl<'t> Scanned<'t> {
             // An array without a size is one of bindings, which has one number.
             let size = if end == at + 2 { 1 } else { known.unwrap_or(OPEN_SIZE) };
             parts = parts.times(size);
+            let is_changing = file.word(at + 1).is_some_and(|name| self.changing.contains(name));
+            parts.open |= known.is_none() || is_changing;
             at = end;
         }
         (parts, at)
+    }
+
+    /// The lengths of an array that begin at a place, where they are known.
+    fn lengths(&self, file: &File<'t>, start: usize) -> Vec<u32> {
+        let (mut found, mut at) = (Vec::new(), start);
+        while file.is(at, "[") {
+            found.extend(self.size_at(file, at + 1));
+            at = file.behind(at, ["[", "]"]);
+        }
+        found
     }
 
     fn size_at(&self, file: &File<'t>, at: usize) -> Option<u32> {
@@ -342,11 +412,17 @@ impl<'t> Scanned<'t> {
         let opaque = ["sampler", "image", "texture", "subpassInput", "accelerationStructure"];
         if opaque.iter().any(|start| bare.starts_with(start)) {
             let filtered = is_combined && !bare.contains("MS");
-            return Parts { locations: 1, opaque: 1, combined: u32::from(filtered), plain: false };
+            let combined = u32::from(filtered);
+            return Parts { locations: 1, opaque: 1, combined, ..Parts::default() };
         }
-        let columns =
-            ty.strip_prefix("mat").and_then(|rest| rest[..1.min(rest.len())].parse().ok());
-        Parts { locations: columns.unwrap_or(1), opaque: 0, combined: 0, plain: true }
+        match named_type(ty) {
+            Some(Type::Matrix(_, columns, _)) => {
+                let columns = u32::from(columns);
+                Parts { locations: columns, size: 16 * columns, ..Parts::of_numbers(4) }
+            }
+            Some(Type::Vector(_, count)) => Parts::of_numbers(u32::from(count)),
+            _ => Parts::of_numbers(1),
+        }
     }
 
     fn block(&mut self, qualifiers: &Qualifiers, name: &'t str, parts: Parts, elements: u32) {
@@ -388,7 +464,6 @@ impl<'t> Scanned<'t> {
                 group,
             });
         }
-        self.has_loose_uniforms |= uniform && parts.plain;
     }
 
     fn interface(

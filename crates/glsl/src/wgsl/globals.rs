@@ -23,7 +23,7 @@ pub(super) struct OpaqueNames {
 
 /// Bindings that are in use.
 #[derive(Debug, Default)]
-struct Bindings {
+pub(super) struct Bindings {
     used: BTreeSet<(u32, u32)>,
     /// Those that the text names: only the variables that it gives them have them.
     named: BTreeSet<(u32, u32)>,
@@ -31,7 +31,7 @@ struct Bindings {
 
 impl Bindings {
     /// A binding: that of a variable, that of an element of it, or any.
-    fn take(&mut self, group: u32, wanted: Option<u32>, element: u32) -> u32 {
+    pub(super) fn take(&mut self, group: u32, wanted: Option<u32>, element: u32) -> u32 {
         let is_free = |binding: u32| !self.used.contains(&(group, binding));
         let is_open = |binding: u32| is_free(binding) && !self.named.contains(&(group, binding));
         let own = wanted.and_then(|binding| match element {
@@ -208,7 +208,7 @@ impl Writer<'_> {
         found
     }
 
-    fn add_resource(
+    pub(super) fn add_resource(
         &mut self,
         name: String,
         wgsl: String,
@@ -424,49 +424,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Uniforms that are in no block become one.
-    fn plan_default_block(&mut self, bindings: &mut Bindings) {
-        let shader = self.shader;
-        let mut members = String::new();
-        let rules = Rules { packing: Packing::Std140, row_major: false, uniform: true };
-        for (index, var) in shader.vars.iter().enumerate() {
-            if var.place != Place::Uniform || self.is_all_opaque(&var.ty) {
-                continue;
-            }
-            let Some(cell) = self.cell(&var.ty, rules, var.at) else { continue };
-            let name = self.var_name(index as u32);
-            let attribute = match &var.ty {
-                // Where uniforms have structures and arrays in WGSL.
-                Type::Struct(_) | Type::Array(..) | Type::Matrix(..) => "@align(16) ",
-                _ => "",
-            };
-            members.push_str(&format!("    {attribute}{name}: {},\n", cell.text));
-            self.memory.insert(index as u32, cell.mem);
-            let Some(init) = &var.init else { continue };
-            let Some(known) = &init.known else {
-                self.refuse(
-                    init.at,
-                    "the initial value of this uniform is not computed before the shader runs",
-                );
-                continue;
-            };
-            let numbers = known.iter().map(|number| as_f64(*number)).collect();
-            self.facts.list.push((Fact::Initial(var.name.clone(), numbers), var.at));
-        }
-        if members.is_empty() {
-            return;
-        }
-        let ty = self.global_name("Uniforms");
-        let name = self.global_name("uniforms");
-        let binding = bindings.take(0, self.numbers.uniforms(), 0);
-        self.preamble.push(format!(
-            "struct {ty} {{\n{members}}}\n@group(0) @binding({binding}) var<uniform> {name}: {ty};"
-        ));
-        self.add_resource(String::new(), name.clone(), (0, binding), None);
-        self.entry.uniforms = name;
-    }
-
-    fn is_all_opaque(&self, ty: &Type) -> bool {
+    pub(super) fn is_all_opaque(&self, ty: &Type) -> bool {
         match ty.innermost() {
             Type::Opaque(_) => true,
             Type::Struct(index) => {
@@ -732,15 +690,6 @@ impl Writer<'_> {
     /// The place of a whole text, for what has none.
     pub(super) fn nowhere() -> At {
         At::default()
-    }
-}
-
-fn as_f64(number: Number) -> f64 {
-    match number {
-        Number::Bool(value) => f64::from(u8::from(value)),
-        Number::Int(value) => f64::from(value),
-        Number::Uint(value) => f64::from(value),
-        Number::Float(value) => f64::from(value),
     }
 }
 

@@ -42,6 +42,13 @@ pub(super) struct Cell {
     own_size: u32,
 }
 
+impl Cell {
+    /// Its size by the rules of the block.
+    pub(super) fn size(&self) -> u32 {
+        self.size
+    }
+}
+
 /// The rules of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Rules {

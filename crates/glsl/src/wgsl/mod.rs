@@ -17,6 +17,7 @@ mod output;
 mod path;
 mod stmt;
 mod texture;
+mod uniforms;
 mod value;
 
 use std::borrow::Cow;
