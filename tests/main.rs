@@ -47,6 +47,7 @@ mod metal;
 mod migrate;
 mod naga;
 mod new;
+mod opengl_scene;
 mod oracles;
 mod outputs;
 mod own;
@@ -109,6 +110,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     migrate::tests,
     naga::tests,
     new::tests,
+    opengl_scene::tests,
     oracles::tests,
     outputs::tests,
     own::tests,
