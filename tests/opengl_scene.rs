@@ -135,7 +135,10 @@ fn draw(session: &dyn Session, [vertex, fragment]: &[Shipped; 2]) -> Result<Pict
     Ok(pixels.iter().map(|pixel| pixel.map(f32::from_bits)).collect())
 }
 
-fn open(target: Target) -> Result<Vec<(&'static str, Box<dyn Session>)>, String> {
+/// The name of an executor, and a session of it.
+type OpenDriver = (&'static str, Box<dyn Session>);
+
+fn open(target: Target) -> Result<Vec<OpenDriver>, String> {
     let sessions = executors::shipping(target).map(|(entry, shipping)| {
         let session = (shipping.open)().map_err(|missing| entry.missing(&missing))?;
         Ok((entry.name, session))
@@ -193,7 +196,8 @@ fn others_are_noticed() -> Result<(), String> {
 fn share_apart(expected: &[[f32; 4]], found: &[[f32; 4]]) -> f64 {
     let is_apart = |(left, right): (&[f32; 4], &[f32; 4])| {
         left.iter().zip(right).any(|(left, right)| {
-            left.to_bits() != right.to_bits() && !((left - right).abs() <= NEAR)
+            let is_near = (left - right).abs() <= NEAR;
+            left.to_bits() != right.to_bits() && !is_near
         })
     };
     let apart = expected.iter().zip(found).filter(|pair| is_apart(*pair)).count();

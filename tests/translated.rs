@@ -1,6 +1,7 @@
 //! Random functions of WESL, translated to GLSL: Mesa's own front end compiles the text, and the
 //! results are those of the evaluator to the bit.
 
+mod library;
 mod program;
 
 use std::collections::BTreeMap;
@@ -9,8 +10,8 @@ use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::kernel::{self, Kernel};
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::source::SourceSet;
-use lamplight_translate::glsl::Style;
-use lamplight_translate::{SourceModule, wesl_to_glsl};
+use lamplight_translate::print::{Dialect, Style};
+use lamplight_translate::{SourceModule, translate_wesl};
 use libtest_mimic::{Failed, Trial};
 
 use crate::random::Random;
@@ -25,7 +26,7 @@ const REFUSED: [(&str, usize); 2] = [("glsl_source", 2), ("essl_source", 2)];
 const ROWS: usize = 24;
 
 const STYLE: Style<'static> =
-    Style { command: None, guard: "RANDOM", sampling: None, prefix: None };
+    Style { dialect: Dialect::Glsl, command: None, guard: "RANDOM", sampling: None, prefix: None };
 
 pub fn tests() -> Vec<Trial> {
     REFUSED
@@ -34,7 +35,9 @@ pub fn tests() -> Vec<Trial> {
                 values_agree(executor, refused)
             })
         })
-        .into()
+        .into_iter()
+        .chain(library::tests())
+        .collect()
 }
 
 fn values_agree(executor: &'static str, expected: usize) -> Result<(), Failed> {
@@ -113,7 +116,7 @@ fn translated(made: &Program) -> Result<String, String> {
     let mut sources = SourceSet::default();
     let source = sources.add("random.wesl", made.text.as_str());
     let module = SourceModule { path: vec!["random".to_owned()], source, text: &made.text };
-    let files = wesl_to_glsl(&[module], &[], &STYLE)
+    let files = translate_wesl(&[module], &[], &STYLE)
         .map_err(|problems| render(&sources, &problems, Form::Human))?;
     let flags: String = FLAGS
         .iter()

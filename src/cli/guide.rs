@@ -51,7 +51,11 @@ const ENTRIES: &[HelpEntry] = &[
             "lamplight compile - --lang wesl --target wgsl --feature fog < shaders/lamp.wesl",
         ],
     ),
-    guide_entry("translate", "From GLSL to WGSL", &["lamplight translate lamp.frag --to wgsl"]),
+    guide_entry(
+        "translate",
+        "Translating shaders",
+        &["lamplight translate lamp.frag --to wgsl", "lamplight translate lamp.wesl --to hlsl"],
+    ),
     guide_entry("lint", PACKAGE, &["lamplight lint", "lamplight lint shaders/lamp.wesl"]),
     guide_entry("migrate", "From naga_oil", &["lamplight migrate --from naga_oil old -o new"]),
     guide_entry(

@@ -1,23 +1,28 @@
-//! `lamplight translate FILE --to wgsl`: a shader in another language, to read and to keep.
+//! `lamplight translate FILE --to wgsl|glsl|hlsl|msl`: a shader in another language, to read and to
+//! keep.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use lamplight_translate::print::{Dialect, Style};
+use lamplight_translate::{SourceModule, translate_wesl};
 
 use super::compile::parse_convention;
-use super::failure::{DiagnosticForm, Failure};
+use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::input::InputArguments;
 use super::terminal::write_data;
 use crate::bundle::{Language, SourceClip};
 use crate::compose::Composed;
-use crate::diagnostic::codes;
+use crate::diagnostic::{Diagnostics, Label, codes};
 use crate::generate::add_numbers;
-use crate::glsl::wgsl::Written;
-use crate::source::SourceSet;
-use crate::validate::{positions_of, translate_glsl};
+use crate::glsl::wgsl::{Clip, Written};
+use crate::source::{SourceId, SourceSet};
+use crate::validate::{glsl_as_wgsl, on_large_stack, positions_of, translate_glsl};
 
-/// Print a GLSL shader as readable WGSL: its names and comments are kept.
+/// Print a shader in another language, as readable source: its names and comments are kept. GLSL is
+/// translated to WGSL, and both to GLSL for Vulkan, HLSL and MSL, of which the last two are given
+/// functions alone.
 #[derive(Args)]
 pub struct Arguments {
     /// Path to the shader; `-` is standard input.
@@ -39,24 +44,105 @@ pub struct Arguments {
 enum TargetLanguage {
     /// For WebGPU.
     Wgsl,
+    /// Version 4.50, for Vulkan.
+    Glsl,
+    /// Functions for Direct3D, Unity and Unreal Engine.
+    Hlsl,
+    /// Functions for Metal.
+    Msl,
 }
 
 pub fn run_translate(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    let TargetLanguage::Wgsl = arguments.to;
-    let mut ready = arguments.input.compose(&arguments.file, SourceSet::default(), form)?;
+    let Arguments { file, to, source_clip, input } = arguments;
+    let mut ready = input.compose(&file, SourceSet::default(), form)?;
     add_numbers(&mut ready.composed, &ready.context.numbers);
-    let (Language::Glsl, Some(stage)) = (ready.composed.language, ready.composed.stage) else {
-        return Err(Failure::usage("only GLSL is translated to WGSL"));
+    let clip = positions_of(&ready.composed, source_clip);
+    let name = file.file_stem().map_or("shader".into(), |stem| stem.to_string_lossy());
+    let name = name.split('.').next().unwrap_or_default();
+    let translated = match to {
+        TargetLanguage::Wgsl => {
+            return match as_wgsl(&ready.composed, clip)? {
+                Ok(text) => Ok(write_data(text.as_bytes())?),
+                Err(problems) => Err(Failure::Input(ready.sources, problems)),
+            };
+        }
+        TargetLanguage::Glsl => printed(&ready.composed, clip, Dialect::Glsl, name),
+        TargetLanguage::Hlsl => printed(&ready.composed, clip, Dialect::Hlsl, name),
+        TargetLanguage::Msl => printed(&ready.composed, clip, Dialect::Msl, name),
     };
-    let clip = positions_of(&ready.composed, arguments.source_clip);
-    let translated = translate_glsl(&ready.composed, stage, clip);
     match translated {
-        Ok(written) => {
-            check_written(&written.text)?;
-            Ok(write_data(with_notes(&written).as_bytes())?)
+        Ok((texts, warnings)) => {
+            print_warnings(&ready.sources, &warnings, form);
+            match texts.as_slice() {
+                [text] => Ok(write_data(text.as_bytes())?),
+                _ => Err(Failure::usage(
+                    "the file has several stages, and GLSL has a file for each: translate files \
+                     with one entry point",
+                )),
+            }
         }
         Err(problems) => Err(Failure::Input(ready.sources, problems)),
     }
+}
+
+/// A shader in GLSL as WGSL.
+fn as_wgsl(composed: &Composed, clip: Clip) -> Result<Result<String, Diagnostics>, Failure> {
+    let (Language::Glsl, Some(stage)) = (composed.language, composed.stage) else {
+        return Err(Failure::usage(
+            "only GLSL is translated to WGSL; `lamplight compose` prints WESL as WGSL",
+        ));
+    };
+    match translate_glsl(composed, stage, clip) {
+        Ok(written) => {
+            check_written(&written.text)?;
+            Ok(Ok(with_notes(&written)))
+        }
+        Err(problems) => Ok(Err(problems)),
+    }
+}
+
+/// Stands for the composed text, which is no source of the author's.
+const COMPOSED: SourceId = SourceId(u32::MAX);
+
+/// The texts of a composed shader in a language like C, and what has no word there.
+fn printed(
+    composed: &Composed,
+    clip: Clip,
+    dialect: Dialect,
+    name: &str,
+) -> Result<(Vec<String>, Diagnostics), Diagnostics> {
+    let (translated, warnings);
+    let wgsl = match composed.language {
+        Language::Glsl => {
+            let mut found = glsl_as_wgsl(composed, clip)?;
+            warnings = std::mem::take(&mut found.warnings);
+            translated = found;
+            &translated
+        }
+        Language::Wesl => {
+            warnings = Vec::new();
+            composed
+        }
+    };
+    let style = Style { dialect, command: None, guard: "", sampling: None, prefix: None };
+    let module = SourceModule { path: vec![name.to_owned()], source: COMPOSED, text: &wgsl.text };
+    match on_large_stack(|| translate_wesl(&[module], &[], &style)) {
+        Ok(files) => Ok((files.into_iter().map(|file| file.text).collect(), warnings)),
+        Err(problems) => Err(in_authors_text(problems, wgsl)),
+    }
+}
+
+/// Places in the composed text as places in the author's.
+fn in_authors_text(mut problems: Diagnostics, composed: &Composed) -> Diagnostics {
+    for problem in &mut problems {
+        let labels = std::mem::take(&mut problem.labels);
+        let moved = labels.into_iter().filter_map(|label| {
+            let span = composed.map.lookup(label.span.range())?;
+            Some(Label { span, message: label.message })
+        });
+        problem.labels = moved.collect();
+    }
+    problems
 }
 
 /// What is written is valid, or the translator is wrong. Features that only some targets have, such

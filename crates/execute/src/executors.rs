@@ -100,6 +100,20 @@ fn opened_source(target: Target) -> Result<Box<dyn Session>, Unavailable> {
     Ok(Box::new(super::gpu::OpenGl::open_source(opengl_of(target)?, target)?))
 }
 
+/// A session for texts in HLSL or MSL that are given with kernels.
+#[cfg(not(target_family = "wasm"))]
+pub(super) fn open_written(target: Target) -> Result<Box<dyn Session>, Unavailable> {
+    use super::gpu::{AdapterName, Shaders};
+    match target {
+        Target::HLSL => open_vulkan(AdapterName::Without(swiftshader::NAME), Shaders::Written),
+        Target::MSL => {
+            let metal = super::metal::Metal::open_written().map_err(|missing| missing.reason)?;
+            Ok(Box::new(metal))
+        }
+        _ => Err(format!("texts for `{target}` are not run").into()),
+    }
+}
+
 #[cfg(not(target_family = "wasm"))]
 fn opengl_of(target: Target) -> Result<super::gpu::OpenGlApi, Unavailable> {
     let version = lamplight_emit::targets::find(target).and_then(|entry| entry.glsl);

@@ -28,6 +28,8 @@ pub mod shipped;
 mod source;
 #[cfg(not(target_family = "wasm"))]
 pub mod web;
+#[cfg(not(target_family = "wasm"))]
+pub mod written;
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 

@@ -16,6 +16,7 @@ use super::gpu::{emitted, run_batches};
 use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH, kernels_to_compile};
 use super::raster::CompiledStages;
 use super::shipped::Shipped;
+use super::written::{self, WrittenLanguage};
 use super::{Session, ShippedPair, executor_failed};
 use lamplight_bundle::{BindingKind, BufferSizes, Native, Target};
 use lamplight_diagnostic::Diagnostic;
@@ -27,6 +28,8 @@ use lamplight_validate::on_large_stack;
 /// A session. It holds programs, each of which has many kernels.
 pub struct Metal {
     compiler: String,
+    /// Whether the text of a kernel's source is compiled in the place of the emitted one.
+    is_written: bool,
     programs: Vec<CompiledProgram>,
     /// For each text that was compiled its program, and its index there. Kernels of one function
     /// have the same text, whatever is in their textures.
@@ -49,7 +52,16 @@ impl Metal {
     /// It is missing.
     pub fn open() -> Result<Self, ClangMissing> {
         let compiler = clang_version()?;
-        Ok(Self { compiler, programs: Vec::new(), texts: HashMap::new(), kept: HashMap::new() })
+        let (programs, texts, kept) = Default::default();
+        Ok(Self { compiler, is_written: false, programs, texts, kept })
+    }
+
+    /// The same for texts that are given with kernels.
+    ///
+    /// # Errors
+    /// It is missing.
+    pub fn open_written() -> Result<Self, ClangMissing> {
+        Ok(Self { is_written: true, ..Self::open()? })
     }
 
     /// Compiles the kernels that are new, all of them at once.
@@ -58,8 +70,11 @@ impl Metal {
         if new.is_empty() {
             return;
         }
-        let emit =
-            |kernel: &&Kernel| emitted::emit_kernel(kernel, Target::MSL).and_then(emitted_text);
+        let is_written = self.is_written;
+        let emit = |kernel: &&Kernel| match is_written {
+            true => written::fragment_text(kernel, WrittenLanguage::Msl),
+            false => emitted::emit_kernel(kernel, Target::MSL).and_then(emitted_text),
+        };
         let outputs: Vec<Result<(String, Native), Diagnostic>> =
             on_large_stack(|| new.par_iter().map(emit).collect());
         let failure = self.compile_texts(outputs.iter().flatten().map(|(text, _)| text)).err();

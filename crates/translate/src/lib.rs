@@ -2,15 +2,15 @@
 //!
 //! A *reader* makes a [`tree`] of a text, [`types`] finds the type of each expression, and a
 //! *printer* writes the tree in another language. Comments, blank lines and the author's line breaks
-//! stay, and so do conditions: `@if` becomes `#if`. There is one reader so far, of WESL, and one
-//! printer, of GLSL; neither knows the other.
+//! stay, and so do conditions: `@if` becomes `#if`. There is one reader, of WESL; GLSL is first
+//! translated to WGSL. The printer writes GLSL, HLSL and MSL, which differ in words more than in form.
 //!
 //! What has no form in the other language that means the same is a diagnostic with its place, and
-//! then nothing is written. See `glsl` for what is guarded: WGSL says what happens at a division by
+//! then nothing is written. See `print` for what is guarded: WGSL says what happens at a division by
 //! zero, a shift by 40 or the conversion of a large float, and GLSL does not.
 
 pub mod condition;
-pub mod glsl;
+pub mod print;
 pub mod tree;
 pub mod types;
 pub mod wesl;
@@ -18,7 +18,7 @@ pub mod wesl;
 use lamplight_diagnostic::Diagnostics;
 use lamplight_diagnostic::source::SourceId;
 
-use glsl::{MadeFile, Style};
+use print::{MadeFile, Style};
 
 /// A module as text.
 #[derive(Debug, Clone)]
@@ -29,11 +29,11 @@ pub struct SourceModule<'a> {
     pub text: &'a str,
 }
 
-/// Translates modules of WESL that belong together to GLSL.
+/// Translates modules of WESL that belong together to the language of a style.
 ///
 /// `enums` names all axes that have named values. Either side of a comparison may be the axis then;
 /// a comparison of two other names is refused. If it is empty, the axis must be on the left.
-pub fn wesl_to_glsl(
+pub fn translate_wesl(
     sources: &[SourceModule<'_>],
     enums: &[String],
     style: &Style<'_>,
@@ -50,5 +50,5 @@ pub fn wesl_to_glsl(
         return Err(errors);
     }
     let globals = types::check_modules(&mut modules)?;
-    glsl::print_modules(&modules, &globals, style)
+    print::print_modules(&modules, &globals, style)
 }

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use lamplight_tools::GLSLANG;
-use lamplight_translate::glsl::MadeFile;
+use lamplight_translate::print::MadeFile;
 use libtest_mimic::Failed;
 
 /// The most settings of a file's axes.
@@ -35,20 +35,34 @@ pub fn compiles(file: &MadeFile, files: &[MadeFile]) -> Result<(), Failed> {
 }
 
 /// The text with those that it includes in their places.
-fn included(file: &MadeFile, files: &[MadeFile]) -> Result<String, Failed> {
+pub fn included(file: &MadeFile, files: &[MadeFile]) -> Result<String, Failed> {
     let mut text = String::new();
     for line in file.text.lines() {
         match line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
             None => text += line,
             Some("sampling.glsl") => text += SAMPLING,
             Some(path) => {
-                let found = files.iter().find(|other| other.path == path);
+                let below = resolved(&file.path, path);
+                let found = files.iter().find(|other| other.path == below);
                 text += &included(found.ok_or_else(|| format!("there is no `{path}`"))?, files)?;
             }
         }
         text.push('\n');
     }
     Ok(text)
+}
+
+/// The path that a file includes, from the root.
+fn resolved(from: &str, path: &str) -> String {
+    let mut parts: Vec<&str> = from.split('/').collect();
+    parts.pop();
+    for part in path.split('/') {
+        match part {
+            ".." => drop(parts.pop()),
+            part => parts.push(part),
+        }
+    }
+    parts.join("/")
 }
 
 /// The library's macros for textures.

@@ -5,14 +5,19 @@ use std::path::PathBuf;
 use lamplight_diagnostic::render::{Form, render};
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_testing::snapshot;
-use lamplight_translate::glsl::{MadeFile, Style};
-use lamplight_translate::{SourceModule, wesl_to_glsl};
+use lamplight_translate::print::{Dialect, MadeFile, Style};
+use lamplight_translate::{SourceModule, translate_wesl};
 use libtest_mimic::{Failed, Trial};
 
 use crate::compiler;
 
-const STYLE: Style<'static> =
-    Style { command: None, guard: "TEST", sampling: Some("sampling"), prefix: None };
+const STYLE: Style<'static> = Style {
+    dialect: Dialect::Glsl,
+    command: None,
+    guard: "TEST",
+    sampling: Some("sampling"),
+    prefix: None,
+};
 
 pub fn tests() -> Vec<Trial> {
     let mut names: Vec<String> = std::fs::read_dir(folder())
@@ -63,7 +68,7 @@ fn translated(name: &str) -> (String, Vec<MadeFile>) {
         })
         .collect();
     let enums: Vec<String> = ENUMS.iter().map(|name| (*name).to_owned()).collect();
-    match wesl_to_glsl(&modules, &enums, &STYLE) {
+    match translate_wesl(&modules, &enums, &STYLE) {
         Ok(files) => {
             let own = files.iter().filter(|file| file.path.starts_with(name));
             (own.map(|file| format!("--- {}\n{}", file.path, file.text)).collect(), files)

@@ -2,8 +2,8 @@
 
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_testing::random::Random;
-use lamplight_translate::glsl::LIBRARY_STYLE;
-use lamplight_translate::{SourceModule, wesl_to_glsl};
+use lamplight_translate::print::LIBRARY_STYLE;
+use lamplight_translate::{SourceModule, translate_wesl};
 use libtest_mimic::{Failed, Trial};
 
 pub fn tests() -> Vec<Trial> {
@@ -68,5 +68,5 @@ fn translate(text: &str) -> bool {
     let mut sources = SourceSet::default();
     let source = sources.add("hostile.wesl", text);
     let module = SourceModule { path: vec!["hostile".to_owned()], source, text };
-    wesl_to_glsl(&[module], &[], &LIBRARY_STYLE).is_ok()
+    translate_wesl(&[module], &[], &LIBRARY_STYLE).is_ok()
 }

@@ -5,7 +5,8 @@
 mod compiler;
 mod constructs;
 mod hostile;
+mod languages;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[constructs::tests, hostile::tests])
+    lamplight_testing::run_tests(&[constructs::tests, hostile::tests, languages::tests])
 }

@@ -8,14 +8,16 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use lamplight_translate::print::Dialect;
 
 use super::failure::Failure;
 use super::overwrite::Overwrite;
 use super::terminal::stdout;
 use crate::LIBRARY_FILES;
+use crate::catalogue::translated::module_files;
 use crate::output;
 use crate::project::LIBRARY;
-use crate::source::Files as _;
+use crate::source::{Files as _, SourceSet};
 
 /// Write the shader library for other tools, or the readers of bundles.
 #[derive(Args)]
@@ -43,6 +45,10 @@ enum ExportForm {
     Cargo,
     /// `DIR/lamplight`: an npm package that exports a `weslBundle`, and also contains the GLSL.
     Npm,
+    /// `DIR/lamplight`: the functions in HLSL, for Direct3D, Unity and Unreal Engine.
+    Hlsl,
+    /// `DIR/lamplight`: the functions in MSL, for Metal.
+    Metal,
     /// `DIR/lamplight_c`: headers that read bundles in C and C++, and a package for CMake.
     C,
 }
@@ -93,6 +99,8 @@ pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
         ExportForm::Npm => {
             (npm::NAME, npm::npm_contents(library_modules()?, library_texts(&["glsl"])?))
         }
+        ExportForm::Hlsl => (LIBRARY, translated_library(Dialect::Hlsl)?),
+        ExportForm::Metal => (LIBRARY, translated_library(Dialect::Msl)?),
         ExportForm::C => ("lamplight_c", headers()),
     };
     let files: PackageContents =
@@ -112,6 +120,24 @@ fn exported_files() -> Result<PackageContents, Failure> {
     contents.extend(library_texts(&["toml"])?.into_iter().filter(|(path, _)| path == "wesl.toml"));
     contents.extend(license_files());
     contents.insert("README.md".to_owned(), readme_text());
+    Ok(contents)
+}
+
+/// The functions in another language, as files that include each other.
+fn translated_library(dialect: Dialect) -> Result<PackageContents, Failure> {
+    let mut sources = SourceSet::default();
+    let mut contents = module_files(&LIBRARY_FILES, dialect, &mut sources)
+        .map_err(|problems| Failure::Input(sources, problems))?;
+    contents.extend(license_files());
+    let readme = format!(
+        "# lamplight {}\n\nLighting and shadow functions in {}, tested function by function.\n\n\
+         Licence: {}. Source: {}\n",
+        env!("CARGO_PKG_VERSION"),
+        dialect.name(),
+        env!("CARGO_PKG_LICENSE"),
+        env!("CARGO_PKG_REPOSITORY")
+    );
+    contents.insert("README.md".to_owned(), readme);
     Ok(contents)
 }
 

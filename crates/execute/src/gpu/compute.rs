@@ -37,7 +37,7 @@ impl WgpuDevice {
     /// Runs one entry point.
     pub fn compute(&self, dispatch: &Dispatch<'_>) -> DispatchResult {
         let target = match self.shaders {
-            Shaders::Translated => Target::WGSL,
+            Shaders::Translated | Shaders::Written => Target::WGSL,
             Shaders::Emitted(target) => target,
         };
         let shipped = dispatch.output(target)?;

@@ -22,10 +22,11 @@ use super::dispatch::{Dispatch, DispatchResult};
 use super::frame::{Drawing, Frame};
 use super::kernel::{ECHO, INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
 use super::shipped::ColorFormat;
+use super::written::{self, WrittenLanguage};
 use super::{Session, ShippedPair, draws_none, executor_failed};
 use fixtures::{TEXEL, color_attachment, copy_to_buffer, create_texture, write_level};
 use heaps::HeapGroups;
-use lamplight_bundle::Stage;
+use lamplight_bundle::{Stage, Target};
 use lamplight_diagnostic::Diagnostic;
 use lamplight_emit::Emitted;
 use passthrough::SpirvBinary;
@@ -72,7 +73,7 @@ impl Session for WgpuDevice {
     fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
         match self.shaders {
             Shaders::Translated => self.frames(drawing),
-            Shaders::Emitted(_) => Err(draws_none()),
+            Shaders::Emitted(_) | Shaders::Written => Err(draws_none()),
         }
     }
 
@@ -120,6 +121,13 @@ impl WgpuDevice {
                     let Emitted { bytes, native } = emitted::emit_kernel(kernel, target)?;
                     let heaps = pipeline::HEAPS;
                     let binary = SpirvBinary::new(target, Stage::Fragment, &bytes, &native, heaps);
+                    Some(binary.map_err(executor_failed)?)
+                }
+                Shaders::Written => {
+                    let (text, native) = written::fragment_text(kernel, WrittenLanguage::Hlsl)?;
+                    let (stage, heaps) = (Stage::Fragment, pipeline::HEAPS);
+                    let binary =
+                        SpirvBinary::new(Target::HLSL, stage, text.as_bytes(), &native, heaps);
                     Some(binary.map_err(executor_failed)?)
                 }
             };

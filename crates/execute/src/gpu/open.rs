@@ -42,6 +42,8 @@ pub enum Shaders {
     Translated,
     /// The crate emits it, and the driver gets it unchanged.
     Emitted(Target),
+    /// The kernel's source is HLSL, which glslangValidator compiles.
+    Written,
 }
 
 impl Shaders {
@@ -53,7 +55,7 @@ impl Shaders {
             Self::Emitted(Target::HLSL) => {
                 wgpu::Features::PASSTHROUGH_SHADERS | wgpu::Features::TEXTURE_BINDING_ARRAY
             }
-            Self::Emitted(_) => wgpu::Features::PASSTHROUGH_SHADERS,
+            Self::Emitted(_) | Self::Written => wgpu::Features::PASSTHROUGH_SHADERS,
         }
     }
 }

@@ -35,7 +35,7 @@ impl WgpuDevice {
 
     fn can_draw(&self, pair: ShippedPair<'_>) -> Result<(), Diagnostic> {
         let own = match self.shaders {
-            Shaders::Translated => Target::WGSL,
+            Shaders::Translated | Shaders::Written => Target::WGSL,
             Shaders::Emitted(target) => target,
         };
         let stages = [pair.vertex, pair.fragment];

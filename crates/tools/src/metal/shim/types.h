@@ -203,6 +203,14 @@ using __lamplight::packed_int3;
 using __lamplight::packed_uint3;
 
 namespace metal {
+/// An array that is a value: functions take and return it.
+template <class Element, unsigned long count> struct array {
+  Element elements[count];
+  Element& operator[](unsigned long at) { return elements[at]; }
+  const Element& operator[](unsigned long at) const { return elements[at]; }
+  static constexpr unsigned long size() { return count; }
+};
+
 using ::bool2;
 using ::bool3;
 using ::bool4;

@@ -17,6 +17,8 @@ pub struct Facts {
     blocks: BTreeMap<ItemPath, Structure>,
     /// Structures whose zero somebody needs.
     zeros: BTreeSet<ItemPath>,
+    /// Structures that an expression makes of their members.
+    made: BTreeSet<ItemPath>,
     /// Functions that write something that is not their own.
     effects: BTreeSet<ItemPath>,
     /// Functions that compute with the values of neighbouring fragments.
@@ -86,6 +88,7 @@ impl Facts {
 
     fn find_zeros(&mut self, modules: &[Module], globals: &Globals) {
         let mut wanted: Vec<ItemPath> = Vec::new();
+        let mut made = BTreeSet::new();
         for module in modules {
             for node in &module.items {
                 item_locals(&node.body, &mut |local| {
@@ -94,11 +97,15 @@ impl Facts {
                     }
                 });
                 item_expressions(&node.body, &mut |value| {
-                    if let ExpressionKind::Call { callee: Callee::Construct(ty), arguments, .. } =
-                        &value.kind
-                        && arguments.is_empty()
+                    if let ExpressionKind::Call {
+                        callee: Callee::Construct(ty), arguments, ..
+                    } = &value.kind
                     {
-                        wanted.extend(structure_within(ty));
+                        match (arguments.is_empty(), ty) {
+                            (true, ty) => wanted.extend(structure_within(ty)),
+                            (false, Type::Structure(path)) => drop(made.insert(path.clone())),
+                            (false, _) => {}
+                        }
                     }
                 });
             }
@@ -108,13 +115,20 @@ impl Facts {
                 continue;
             }
             let members = globals.members(&path);
-            if !is_small(&members) {
-                self.zeros.insert(path.clone());
+            match is_small(&members) {
+                true => drop(made.insert(path.clone())),
+                false => drop(self.zeros.insert(path.clone())),
             }
             for member in &members {
                 wanted.extend(structure_within(&member.ty));
             }
         }
+        self.made = made;
+    }
+
+    /// Whether an expression makes a structure of its members.
+    pub fn is_made(&self, path: &ItemPath) -> bool {
+        self.made.contains(path)
     }
 
     fn find_effects(&mut self, modules: &[Module], globals: &Globals) {

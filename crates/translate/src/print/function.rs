@@ -1,5 +1,8 @@
 //! Functions of WGSL as those of GLSL.
 
+use lamplight_diagnostic::Diagnostic;
+
+use super::dialect::Dialect;
 use super::expression::{Bound, CHOICE, POSTFIX, Writer, Written, listed};
 use super::range::is_at_most;
 use crate::tree::{Argument, Binary, Callee, Expression, ExpressionKind, Scalar, Type};
@@ -55,13 +58,20 @@ impl Writer<'_> {
         if name.starts_with("texture") {
             return self.texture_call(name, arguments, value, indent);
         }
+        let special = match self.dialect() {
+            Dialect::Glsl => self.glsl_function(name, arguments, value, indent)?,
+            Dialect::Hlsl => self.hlsl_function(name, arguments, value, indent)?,
+            Dialect::Msl => self.msl_function(name, arguments, indent)?,
+        };
+        if let Some(special) = special {
+            return Ok(special);
+        }
         let whole = |index: usize| self.whole(&arguments[index].value, indent);
         match (name, arguments) {
             ("select", [reject, accept, condition]) => {
                 self.select(&reject.value, &accept.value, &condition.value, indent)
             }
-            ("saturate", [_]) => Ok(called(format!("clamp({}, 0.0, 1.0)", whole(0)?))),
-            // GLSL leaves the result open where the bounds are the wrong way round.
+            // The languages leave the result open where the bounds are the wrong way round.
             ("clamp", [_, low, high]) if !is_at_most(&low.value, &high.value, &self.counters) => {
                 Ok(called(format!("min(max({}, {}), {})", whole(0)?, whole(1)?, whole(2)?)))
             }
@@ -70,17 +80,6 @@ impl Writer<'_> {
                 self.bound(&argument.value, indent)
             }
             ("all" | "any", [argument]) => self.truth(name, &argument.value, indent),
-            ("arrayLength", [argument]) => {
-                let array = self.operand(&argument.value, POSTFIX, indent)?;
-                Ok(called(format!("uint({array}.length())")))
-            }
-            ("workgroupBarrier", []) => Ok(called("barrier()".to_owned())),
-            ("countLeadingZeros" | "countTrailingZeros", [argument]) if is_scalar(argument) => {
-                self.zeros(name, &argument.value, value, indent)
-            }
-            ("countLeadingZeros" | "countTrailingZeros", _) => {
-                Err(untranslated(value.span, format!("the function `{name}` of this argument")))
-            }
             ("dot", [left, _]) if left.value.ty.scalar() != Some(Scalar::F32) => {
                 Err(untranslated(value.span, "the function `dot` of integers"))
             }
@@ -89,6 +88,34 @@ impl Writer<'_> {
             }
             _ => self.plain_function(name, arguments, value, is_broken, indent),
         }
+    }
+
+    /// A call that GLSL writes in a form of its own.
+    fn glsl_function(
+        &self,
+        name: &str,
+        arguments: &[Argument],
+        value: &Expression,
+        indent: usize,
+    ) -> Result<Option<Bound>, Diagnostic> {
+        Ok(Some(match (name, arguments) {
+            ("saturate", [argument]) => {
+                called(format!("clamp({}, 0.0, 1.0)", self.whole(&argument.value, indent)?))
+            }
+            ("arrayLength", [argument]) => {
+                let array = self.operand(&argument.value, POSTFIX, indent)?;
+                called(format!("uint({array}.length())"))
+            }
+            ("workgroupBarrier", []) => called("barrier()".to_owned()),
+            ("countLeadingZeros" | "countTrailingZeros", [argument]) if is_scalar(argument) => {
+                self.zeros(name, &argument.value, value, indent)?
+            }
+            ("countLeadingZeros" | "countTrailingZeros", _) => {
+                let what = format!("the function `{name}` of this argument");
+                return Err(untranslated(value.span, what));
+            }
+            _ => return Ok(None),
+        }))
     }
 
     /// The number of zeros before or behind all ones. GLSL finds no bit in 0, where WGSL counts all.
@@ -130,6 +157,16 @@ impl Writer<'_> {
         for argument in arguments {
             texts.push((self.whole(&argument.value, inner)?, argument.is_on_new_line));
         }
+        let other = match self.dialect() {
+            Dialect::Glsl => None,
+            Dialect::Hlsl => Some(super::hlsl::function_name(name)),
+            Dialect::Msl => Some(super::msl::function_name(name)),
+        };
+        if let Some(found) = other {
+            let found =
+                found.ok_or_else(|| untranslated(value.span, format!("the function `{name}`")))?;
+            return Ok(called(listed(found, &texts, is_broken, indent)));
+        }
         if let Some((_, glsl)) = COUNTS.iter().find(|(wgsl, _)| *wgsl == name) {
             let text = listed(glsl, &texts, is_broken, indent);
             return Ok(called(match value.ty.scalar() {
@@ -154,6 +191,11 @@ impl Writer<'_> {
     ) -> Written {
         if self.facts.has_effects(reject) || self.facts.has_effects(accept) {
             return Err(untranslated(accept.span, "a value with effects in `select`"));
+        }
+        match self.dialect() {
+            Dialect::Glsl => {}
+            Dialect::Hlsl => return self.hlsl_select([reject, accept, condition], indent),
+            Dialect::Msl => return self.msl_select([reject, accept, condition], indent),
         }
         let is_vector = matches!(condition.ty, Type::Vector(..));
         let is_repeatable = self.is_repeatable(reject) && self.is_repeatable(accept);
@@ -184,6 +226,7 @@ impl Writer<'_> {
         if let ExpressionKind::Binary { operator, left, right, .. } = &value.bare().kind
             && matches!((name, operator), ("all", Binary::Equal) | ("any", Binary::NotEqual))
             && left.ty.scalar() != Some(Scalar::Bool)
+            && self.dialect() == Dialect::Glsl
         {
             let (sign, binds) = operator.spelling();
             let left = self.operand(left, binds + 1, indent)?;

@@ -3,6 +3,7 @@
 use lamplight_diagnostic::Diagnostic;
 
 use super::condition::chains_of;
+use super::dialect::Dialect;
 use super::expression::{LocalRole, Writer};
 use super::item::{ItemWriter, write_chain, write_line};
 use super::lines::{Indented, comment_text};
@@ -29,7 +30,7 @@ impl ItemWriter<'_> {
     ) -> Result<(), Diagnostic> {
         let result = function.result.as_ref().map_or(&Type::Nothing, |field| &field.ty);
         let name = self.own_name(&function.name);
-        let head = format!("{} {name}", self.names.type_name(result, function.span)?);
+        let head = format!("{} {name}", self.names.returned_type(result, function.span)?);
         let kept: Vec<&Node<Field>> = function
             .parameters
             .iter()
@@ -96,14 +97,19 @@ impl ItemWriter<'_> {
     }
 
     fn parameter(&self, field: &Field, writer: &Writer<'_>) -> Result<String, Diagnostic> {
-        let (word, ty) = match &field.ty {
-            Type::Pointer(Space::Function | Space::Private, target) => ("inout ", &**target),
+        let (word, mark, ty) = match &field.ty {
+            Type::Pointer(Space::Function | Space::Private, target)
+                if self.names.dialect == Dialect::Msl =>
+            {
+                ("thread ", "&", &**target)
+            }
+            Type::Pointer(Space::Function | Space::Private, target) => ("inout ", "", &**target),
             Type::Pointer(..) => return Err(untranslated(field.span, "a pointer into a buffer")),
-            other => ("", other),
+            other => ("", "", other),
         };
         let (ty, lengths) = self.names.declared_type(ty, field.span)?;
         let name = parameter_name(field, writer);
-        Ok(format!("{word}{ty} {name}{lengths}"))
+        Ok(format!("{word}{ty}{mark} {name}{lengths}"))
     }
 
     /// A header with parameters that have conditions. The commas belong to the conditions: those

@@ -2,6 +2,7 @@
 
 use lamplight_diagnostic::Diagnostic;
 
+use super::dialect::Dialect;
 use super::expression::{Bound, POSTFIX, Writer};
 use super::range::range_of;
 use crate::tree::{Binary, Expression, ExpressionKind, NumberValue, Scalar, Type};
@@ -27,8 +28,19 @@ impl Writer<'_> {
         indent: usize,
     ) -> Result<Option<Bound>, Diagnostic> {
         let is_vector = matches!(left.ty, Type::Vector(..)) && matches!(right.ty, Type::Vector(..));
+        if (self.dialect(), operator) == (Dialect::Hlsl, Binary::Multiply)
+            && let Some(product) = self.hlsl_product(left, right, indent)?
+        {
+            return Ok(Some(product));
+        }
+        let is_logical = matches!(operator, Binary::And | Binary::Or);
+        if self.dialect() == Dialect::Hlsl && is_logical && self.facts.has_effects(right) {
+            let what = "a call with effects behind `&&` or `||`, which HLSL always makes";
+            return Err(untranslated(right.span, what));
+        }
         let comparison = COMPARISONS.iter().find(|(known, _)| *known == operator);
-        if let Some((_, name)) = comparison.filter(|_| is_vector) {
+        let is_function = is_vector && self.dialect() == Dialect::Glsl;
+        if let Some((_, name)) = comparison.filter(|_| is_function) {
             let (left, right) = (self.whole(left, indent)?, self.whole(right, indent)?);
             return Ok(Some(Bound(format!("{name}({left}, {right})"), POSTFIX)));
         }
@@ -141,7 +153,9 @@ impl Writer<'_> {
         let first = self.operand(left, binds, indent)?;
         let count = self.operand(right, 6, indent)?;
         let mask = match right.ty {
-            Type::Vector(size, _) => format!("uvec{size}(31u)"),
+            Type::Vector(size, _) if self.dialect() == Dialect::Glsl => {
+                format!("uvec{size}(31u)")
+            }
             _ => "31u".to_owned(),
         };
         Ok(Some(Bound(format!("{first} {sign} ({count} & {mask})"), binds)))

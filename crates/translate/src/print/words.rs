@@ -3,6 +3,7 @@
 use lamplight_diagnostic::Diagnostic;
 use lamplight_diagnostic::source::Span;
 
+use super::dialect::Dialect;
 use crate::tree::{Scalar, Shape, Texture, TextureKind};
 use crate::wesl::untranslated;
 
@@ -34,8 +35,31 @@ pub fn vector_prefix(scalar: Scalar, span: Span) -> Result<&'static str, Diagnos
     })
 }
 
+/// A vector: `vec3`, or `float3`.
+pub fn vector_name(
+    dialect: Dialect,
+    size: u8,
+    scalar: Scalar,
+    span: Span,
+) -> Result<String, Diagnostic> {
+    match dialect {
+        Dialect::Glsl => Ok(format!("{}vec{size}", vector_prefix(scalar, span)?)),
+        Dialect::Hlsl | Dialect::Msl => Ok(format!("{}{size}", scalar_name(scalar, span)?)),
+    }
+}
+
 /// `texture2D`, or another word in the place of `texture`.
-pub fn texture_name(texture: &Texture, word: &str, span: Span) -> Result<String, Diagnostic> {
+pub fn texture_name(
+    dialect: Dialect,
+    texture: &Texture,
+    word: &str,
+    span: Span,
+) -> Result<String, Diagnostic> {
+    match dialect {
+        Dialect::Glsl => {}
+        Dialect::Hlsl => return super::hlsl::texture_name(texture, span),
+        Dialect::Msl => return super::msl::texture_name(texture, span),
+    }
     let shape = match texture.shape {
         Shape::D1 => "1D",
         Shape::D2 => "2D",

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use lamplight_diagnostic::Diagnostic;
 
 use super::condition::{Chain, chains_of, directive};
+use super::dialect::Dialect;
 use super::expression::{LocalRole, Writer};
 use super::facts::Facts;
 use super::lines::{Indented, comment_text};
@@ -90,10 +91,23 @@ impl<'a> ItemWriter<'a> {
         let Constant { name, given, value, id, span } = constant;
         let ty = given.as_ref().unwrap_or(&value.ty);
         let (ty, lengths) = self.names.declared_type(ty, *span)?;
-        let value = self.writer().whole(value, 0)?;
+        let words = match self.names.dialect {
+            Dialect::Glsl => "const",
+            Dialect::Hlsl => "static const",
+            Dialect::Msl => "constant",
+        };
+        if self.names.dialect != Dialect::Glsl && id.is_some() {
+            return Err(untranslated(*span, "an `override`"));
+        }
+        let value = match super::hlsl::made_array(value) {
+            Some(arguments) if self.names.dialect == Dialect::Hlsl => {
+                self.writer().array_list(&value.ty, arguments, true, 0)?
+            }
+            _ => self.writer().whole(value, 0)?,
+        };
         let layout = id.map_or(String::new(), |id| format!("layout(constant_id = {id}) "));
         let name = self.own_name(name);
-        out.line(&format!("{layout}const {ty} {name}{lengths} = {value};"));
+        out.line(&format!("{layout}{words} {ty} {name}{lengths} = {value};"));
         Ok(())
     }
 
@@ -102,7 +116,10 @@ impl<'a> ItemWriter<'a> {
         self.members(structure, out)?;
         out.line("};");
         let path = self.own_path(&structure.name);
-        match self.facts.needs_zero(&path) {
+        if self.names.dialect == Dialect::Hlsl && self.facts.is_made(&path) {
+            self.make_function(&path, structure, out)?;
+        }
+        match self.facts.needs_zero(&path) && self.names.dialect != Dialect::Msl {
             true => self.zero_function(&path, structure, out),
             false => Ok(()),
         }
@@ -169,6 +186,11 @@ impl<'a> ItemWriter<'a> {
 
     fn variable(&self, variable: &Variable, out: &mut Indented) -> Result<(), Diagnostic> {
         let Variable { name, space, ty, binding, value, span } = variable;
+        if self.names.dialect != Dialect::Glsl {
+            let what = "a variable of a module";
+            return Err(untranslated(*span, what)
+                .note("help: give it to functions as a parameter: only these are translated"));
+        }
         let place = binding.map(|(set, binding)| format!("set = {set}, binding = {binding}"));
         match (space, place) {
             (Space::Handle, Some(place)) => {
@@ -272,6 +294,11 @@ impl<'a> ItemWriter<'a> {
 
     /// A function, or a stage.
     pub fn function(&self, function: &Function, out: &mut Indented) -> Result<(), Diagnostic> {
+        if self.names.dialect != Dialect::Glsl && function.stage.is_some() {
+            let what = "an entry point";
+            return Err(untranslated(function.span, what)
+                .note("help: only functions are translated: move what you need into one"));
+        }
         let mut writer = self.writer();
         let around = Surroundings {
             names: self.names,

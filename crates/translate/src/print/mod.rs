@@ -1,16 +1,20 @@
-//! Writes a tree as GLSL: for Vulkan, with separate textures and samplers, and with `#if` in the
-//! place of conditions.
+//! Writes a tree as GLSL for Vulkan, with separate textures and samplers, or as HLSL or MSL. `#if`
+//! stands in the place of conditions.
 
 mod condition;
 mod counter;
+mod dialect;
 mod expression;
 mod facts;
 mod function;
 mod header;
+mod hlsl;
 mod item;
 mod lines;
 mod macros;
 mod meeting;
+mod method;
+mod msl;
 mod names;
 mod operator;
 mod order;
@@ -33,6 +37,7 @@ use crate::condition::Condition;
 use crate::tree::{Field, Item, ItemPath, Line, Module, Node, Stage, Structure, Type};
 use crate::types::Globals;
 use condition::{chains_of, condition_text, directive};
+pub use dialect::Dialect;
 use facts::Facts;
 use item::ItemWriter;
 use lines::Indented;
@@ -45,9 +50,11 @@ use uses::item_uses;
 /// How files are written.
 #[derive(Debug, Clone, Copy)]
 pub struct Style<'a> {
+    pub dialect: Dialect,
     /// The command that makes the files, for their heads. Without one they have none.
     pub command: Option<&'a str>,
-    /// The beginning of the macros that guard files against a second inclusion.
+    /// The beginning of the macros that guard files against a second inclusion. If it is empty,
+    /// nothing includes the files.
     pub guard: &'a str,
     /// The file, without its ending, with the macros for textures and samplers as parameters.
     pub sampling: Option<&'a str>,
@@ -58,6 +65,7 @@ pub struct Style<'a> {
 
 /// How this project's library is written.
 pub const LIBRARY_STYLE: Style<'static> = Style {
+    dialect: Dialect::Glsl,
     command: Some("cargo xtask docs"),
     guard: "LAMPLIGHT",
     sampling: Some("filter/sampling"),
@@ -80,7 +88,7 @@ pub fn print_modules(
 ) -> Result<Vec<MadeFile>, Diagnostics> {
     let macros = macros::macros_of(modules);
     let facts = Facts::of(modules, globals);
-    let names = Names::of(modules, macros.keys());
+    let names = Names::of(modules, macros.keys(), style.dialect);
     let exports = exports_of(modules);
     let printer = Printer { globals, facts: &facts, names: &names, style };
     let mut files = Vec::new();
@@ -131,7 +139,8 @@ impl Printer<'_> {
         let mut files = Vec::new();
         let mut errors = Vec::new();
         for (part, items) in &places.parts {
-            let file = FilePart { module, part: *part, items, has_shared, has_stages };
+            let dialect = self.style.dialect;
+            let file = FilePart { dialect, module, part: *part, items, has_shared, has_stages };
             let text = match part {
                 Part::Shared => self.shared(&file, &writer),
                 Part::Stage(stage) => self.stage(&file, *stage, &writer),
@@ -149,10 +158,14 @@ impl Printer<'_> {
         let guard = self.guard(&file.module.path);
         let mut out = Indented::default();
         self.head(file, &mut out);
-        out.blank();
-        out.line(&format!("#ifndef {guard}"));
-        out.line(&format!("#define {guard}"));
+        let is_guarded = !self.style.guard.is_empty();
+        if is_guarded {
+            out.blank();
+            out.line(&format!("#ifndef {guard}"));
+            out.line(&format!("#define {guard}"));
+        }
         self.includes(file, &mut out);
+        self.declarations(file, &mut out).map_err(|error| vec![error])?;
         let prefix = self.prefix(&file.module.path);
         if let Some(path) = &prefix {
             out.blank();
@@ -168,9 +181,34 @@ impl Printer<'_> {
             out.blank();
             out.raw(&format!("#ifdef LAMPLIGHT_PREFIX\n#include \"{path}\"\n#endif\n"));
         }
-        out.blank();
-        out.line("#endif");
-        Ok(out.text)
+        if is_guarded {
+            out.blank();
+            out.line("#endif");
+        }
+        Ok(out.text.trim_start_matches('\n').to_owned())
+    }
+
+    /// What a file in HLSL or MSL has before its items.
+    fn declarations(&self, file: &FilePart<'_>, out: &mut Indented) -> Result<(), Diagnostic> {
+        match self.style.dialect {
+            Dialect::Glsl => {}
+            Dialect::Msl => {
+                out.blank();
+                out.line("using namespace metal;");
+            }
+            Dialect::Hlsl => {
+                let mut texts = hlsl::array_types(file.items, self.names)?
+                    .into_iter()
+                    .map(|(name, text)| (name.to_uppercase(), text + "\n"))
+                    .collect::<BTreeMap<String, String>>();
+                texts.extend(texture::size_functions(file.items)?);
+                for (guard, text) in texts {
+                    out.blank();
+                    out.raw(&format!("#ifndef {guard}\n#define {guard}\n{text}#endif\n"));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// A stage of a program.
@@ -274,6 +312,8 @@ impl Printer<'_> {
                     out.line(format!("//! {line}").trim_end());
                 }
             }
+            // The name of a text alone says nothing.
+            _ if self.style.guard.is_empty() => {}
             (part, _) => {
                 let what = match part {
                     Part::Shared => "What the stages",
@@ -303,14 +343,14 @@ impl Printer<'_> {
             guard += "_";
             guard += &segment.to_uppercase();
         }
-        guard + "_GLSL"
+        guard + "_" + &self.style.dialect.ending().to_uppercase()
     }
 
     /// The path of the file that gives names a prefix, as a module includes it.
     fn prefix(&self, path: &[String]) -> Option<String> {
         let (prefix, without) = self.style.prefix?;
         let is_without = path.first().is_some_and(|folder| without.contains(&folder.as_str()));
-        (!is_without).then(|| relative_path(path, prefix))
+        (!is_without).then(|| relative_path(path, prefix, self.style.dialect))
     }
 
     /// The includes of what items use.
@@ -333,33 +373,23 @@ impl Printer<'_> {
                 wanted.entry(sampling.to_owned()).or_default().push((condition.clone(), always));
             }
         }
-        if wanted.is_empty() {
+        let is_metal = self.style.dialect == Dialect::Msl;
+        if wanted.is_empty() && !is_metal {
             return;
         }
         out.blank();
+        if is_metal {
+            out.line("#include <metal_stdlib>");
+        }
         let mut lines: Vec<(String, Condition)> = wanted
             .into_iter()
             .map(|(target, conditions)| {
-                (relative_path(&file.module.path, &target), include_condition(conditions))
+                let path = relative_path(&file.module.path, &target, self.style.dialect);
+                (path, include_condition(conditions))
             })
             .collect();
         lines.sort_by(|left, right| left.0.cmp(&right.0));
-        let mut last = Condition::Literal(true);
-        for (path, condition) in lines {
-            if condition != last {
-                if last != Condition::Literal(true) {
-                    out.line("#endif");
-                }
-                if condition != Condition::Literal(true) {
-                    out.line(&format!("#if {}", condition_text(&condition)));
-                }
-            }
-            out.line(&format!("#include \"{path}\""));
-            last = condition;
-        }
-        if last != Condition::Literal(true) {
-            out.line("#endif");
-        }
+        write_includes(lines, out);
     }
 
     /// What an item and the structure of its block use of other modules and of the shared file.
@@ -386,8 +416,29 @@ impl Printer<'_> {
     }
 }
 
+/// Lines that include files, those of one condition together.
+fn write_includes(lines: Vec<(String, Condition)>, out: &mut Indented) {
+    let mut last = Condition::Literal(true);
+    for (path, condition) in lines {
+        if condition != last {
+            if last != Condition::Literal(true) {
+                out.line("#endif");
+            }
+            if condition != Condition::Literal(true) {
+                out.line(&format!("#if {}", condition_text(&condition)));
+            }
+        }
+        out.line(&format!("#include \"{path}\""));
+        last = condition;
+    }
+    if last != Condition::Literal(true) {
+        out.line("#endif");
+    }
+}
+
 /// A file in the making.
 struct FilePart<'a> {
+    dialect: Dialect,
     module: &'a Module,
     part: Part,
     items: &'a [Node<Item>],
@@ -399,7 +450,7 @@ impl FilePart<'_> {
     fn path(&self) -> String {
         let path = self.module.path.join("/");
         match self.part {
-            Part::Shared => format!("{path}.glsl"),
+            Part::Shared => format!("{path}.{}", self.dialect.ending()),
             Part::Stage(Stage::Vertex) => format!("{path}.vert.glsl"),
             Part::Stage(Stage::Fragment) => format!("{path}.frag.glsl"),
             Part::Stage(Stage::Compute) => format!("{path}.comp.glsl"),
@@ -436,12 +487,12 @@ fn takes_textures(item: &Item) -> bool {
 }
 
 /// The path of a file as a module includes it: `a/b` of the module `c/d` is `../a/b.glsl`.
-fn relative_path(module: &[String], target: &str) -> String {
+fn relative_path(module: &[String], target: &str, dialect: Dialect) -> String {
     let target: Vec<&str> = target.split('/').collect();
     let folder = &module[..module.len().saturating_sub(1)];
     let common = folder.iter().zip(&target).take_while(|(left, right)| left == right).count();
     let ups = "../".repeat(folder.len() - common);
-    format!("{ups}{}.glsl", target[common..].join("/"))
+    format!("{ups}{}.{}", target[common..].join("/"), dialect.ending())
 }
 
 fn structures_of(module: &Module) -> BTreeMap<String, (Vec<Line>, Structure)> {

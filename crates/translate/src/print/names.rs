@@ -5,21 +5,21 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::dialect::Dialect;
+use super::words::{macro_name, scalar_name, texture_name, vector_name};
+use crate::tree::{Count, Item, ItemPath, Module, Scalar, Type};
+use crate::wesl::untranslated;
 use lamplight_diagnostic::Diagnostic;
 use lamplight_diagnostic::source::Span;
-use lamplight_syntax::glsl::words::{is_function, is_keyword, is_reserved};
-
-use super::words::{macro_name, scalar_name, texture_name, vector_prefix};
-use crate::tree::{Count, Item, ItemPath, Module, Scalar, Type};
-use crate::types::is_builtin;
-use crate::wesl::untranslated;
 
 /// The names of the items of all modules, and of their members.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Names {
+    pub dialect: Dialect,
     items: BTreeMap<ItemPath, String>,
     members: BTreeMap<(ItemPath, String), String>,
     zeros: BTreeMap<ItemPath, String>,
+    makers: BTreeMap<ItemPath, String>,
     /// Structures of what stages take and return: they have no declaration in GLSL.
     stages: BTreeSet<ItemPath>,
     /// The names that something has.
@@ -28,8 +28,20 @@ pub struct Names {
 
 impl Names {
     /// Names all items. `macros` are names that the preprocessor replaces.
-    pub fn of<'a>(modules: &[Module], macros: impl Iterator<Item = &'a String>) -> Self {
-        let mut names = Self { taken: macros.cloned().collect(), ..Self::default() };
+    pub fn of<'a>(
+        modules: &[Module],
+        macros: impl Iterator<Item = &'a String>,
+        dialect: Dialect,
+    ) -> Self {
+        let mut names = Self {
+            dialect,
+            items: BTreeMap::new(),
+            members: BTreeMap::new(),
+            zeros: BTreeMap::new(),
+            makers: BTreeMap::new(),
+            stages: BTreeSet::new(),
+            taken: macros.cloned().collect(),
+        };
         let items = || {
             modules
                 .iter()
@@ -39,7 +51,7 @@ impl Names {
         for (module, item) in items() {
             let path = ItemPath { module: module.path.clone(), name: item.name().to_owned() };
             if !names.items.contains_key(&path) {
-                let name = changed_name(&path.name, is_reserved);
+                let name = changed_name(&path.name, |word| dialect.is_reserved(word));
                 let name = name.map_or_else(|| path.name.clone(), |name| names.claimed(&name));
                 names.items.insert(path.clone(), name);
             }
@@ -50,8 +62,12 @@ impl Names {
                 }
                 names.name_members(&path, members);
                 if !names.zeros.contains_key(&path) {
-                    let zero = names.claimed(&zero_name(&names.items[&path]));
-                    names.zeros.insert(path, zero);
+                    let zero = names.claimed(&snake_name("zero", &names.items[&path]));
+                    names.zeros.insert(path.clone(), zero);
+                    if dialect == Dialect::Hlsl {
+                        let maker = names.claimed(&snake_name("make", &names.items[&path]));
+                        names.makers.insert(path, maker);
+                    }
                 }
             }
         }
@@ -64,9 +80,10 @@ impl Names {
         members: impl Iterator<Item = &'a str> + Clone,
     ) {
         let mut taken: BTreeSet<String> = members.clone().map(str::to_owned).collect();
+        let dialect = self.dialect;
         for member in members {
             let key = (path.clone(), member.to_owned());
-            let name = match changed_name(member, is_hidden) {
+            let name = match changed_name(member, |word| dialect.is_hidden(word)) {
                 Some(name) => free_name(&name, &taken),
                 None => member.to_owned(),
             };
@@ -97,19 +114,28 @@ impl Names {
         self.zeros.get(path).map_or("", String::as_str)
     }
 
+    /// The name of the function that makes a structure of its members, in HLSL.
+    pub fn maker(&self, path: &ItemPath) -> &str {
+        self.makers.get(path).map_or("", String::as_str)
+    }
+
     pub fn zeros(&self) -> impl Iterator<Item = &String> {
         self.zeros.values()
     }
 
     /// A name for something that has none in WGSL.
     pub fn invented(&self, wanted: &str) -> String {
-        let wanted = changed_name(wanted, is_reserved).unwrap_or_else(|| wanted.to_owned());
+        let wanted = changed_name(wanted, |word| self.dialect.is_reserved(word))
+            .unwrap_or_else(|| wanted.to_owned());
         free_name(&wanted, &self.taken)
     }
 
     /// A type and the lengths that stand behind the declared name, such as `vec3` and `[9]`.
     pub fn declared_type(&self, ty: &Type, span: Span) -> Result<(String, String), Diagnostic> {
         match ty {
+            Type::Array(..) if self.dialect == Dialect::Msl => {
+                Ok((self.type_name(ty, span)?, String::new()))
+            }
             Type::Array(element, count) => {
                 let (name, inner) = self.declared_type(element, span)?;
                 Ok((name, format!("[{}]{inner}", self.count(count, span)?)))
@@ -123,12 +149,20 @@ impl Names {
         Ok(match ty {
             Type::Nothing => "void".to_owned(),
             Type::Scalar(scalar) => scalar_name(*scalar, span)?.to_owned(),
-            Type::Vector(size, scalar) => format!("{}vec{size}", vector_prefix(*scalar, span)?),
+            Type::Vector(size, scalar) => vector_name(self.dialect, *size, *scalar, span)?,
             Type::Matrix { scalar, .. } if *scalar != Scalar::F32 => {
                 return Err(untranslated(span, "a matrix of abstract numbers"));
             }
+            // The rows of HLSL are the columns of WGSL.
+            Type::Matrix { columns, rows, scalar: _ } if self.dialect != Dialect::Glsl => {
+                format!("float{columns}x{rows}")
+            }
             Type::Matrix { columns, rows, scalar: _ } if columns == rows => format!("mat{columns}"),
             Type::Matrix { columns, rows, scalar: _ } => format!("mat{columns}x{rows}"),
+            Type::Array(element, count) if self.dialect == Dialect::Msl => {
+                let element = self.type_name(element, span)?;
+                format!("array<{element}, {}>", self.count(count, span)?)
+            }
             Type::Array(..) => {
                 let (name, lengths) = self.declared_type(ty, span)?;
                 format!("{name}{lengths}")
@@ -138,12 +172,27 @@ impl Names {
             }
             Type::Structure(path) => self.item(path).to_owned(),
             Type::Pointer(_, target) => self.type_name(target, span)?,
-            Type::Texture(texture) => texture_name(texture, "texture", span)?,
-            Type::Sampler { compares: false } => "sampler".to_owned(),
-            Type::Sampler { compares: true } => "samplerShadow".to_owned(),
+            Type::Texture(texture) => texture_name(self.dialect, texture, "texture", span)?,
+            Type::Sampler { compares } => match (self.dialect, compares) {
+                (Dialect::Glsl, true) => "samplerShadow".to_owned(),
+                (Dialect::Glsl, false) | (Dialect::Msl, _) => "sampler".to_owned(),
+                (Dialect::Hlsl, true) => "SamplerComparisonState".to_owned(),
+                (Dialect::Hlsl, false) => "SamplerState".to_owned(),
+            },
             Type::Atomic(_) => return Err(untranslated(span, "an atomic type")),
             other => return Err(untranslated(span, format!("the type {other}"))),
         })
+    }
+
+    /// The name of an array's type, for a function that returns one: `float3_9`.
+    pub fn returned_type(&self, ty: &Type, span: Span) -> Result<String, Diagnostic> {
+        match (self.dialect, ty) {
+            (Dialect::Hlsl, Type::Array(element, count)) => {
+                let element = self.returned_type(element, span)?;
+                Ok(format!("{element}_{}", self.count(count, span)?))
+            }
+            _ => self.type_name(ty, span),
+        }
     }
 
     fn count(&self, count: &Count, span: Span) -> Result<String, Diagnostic> {
@@ -155,15 +204,6 @@ impl Names {
             Count::Runtime => String::new(),
         })
     }
-}
-
-/// Functions that the printer writes where WGSL has another word, so that no local may hide them.
-const WRITTEN: [&str; 6] = ["abs", "clamp", "max", "min", "mix", "trunc"];
-
-/// Whether a local or a member may not have a word as its name: WGSL lets locals hide functions that
-/// both languages have.
-pub fn is_hidden(word: &str) -> bool {
-    is_keyword(word) || WRITTEN.contains(&word) || is_function(word) && !is_builtin(word)
 }
 
 /// What GLSL needs instead of a name; nothing where it can stay.
@@ -193,10 +233,10 @@ pub fn free_name(wanted: &str, taken: &BTreeSet<String>) -> String {
 }
 
 /// `zero_complex_ior` for `ComplexIor`.
-fn zero_name(structure: &str) -> String {
-    let mut name = "zero".to_owned();
+fn snake_name(first: &str, structure: &str) -> String {
+    let mut name = first.to_owned();
     for letter in structure.chars() {
-        if letter.is_uppercase() && !name.ends_with('_') || name == "zero" {
+        if letter.is_uppercase() && !name.ends_with('_') || name == first {
             name.push('_');
         }
         name.extend(letter.to_lowercase());
@@ -210,7 +250,7 @@ mod tests {
 
     #[test]
     fn reserved_words_are_renamed() {
-        let changed = |name: &str| changed_name(name, is_reserved);
+        let changed = |name: &str| changed_name(name, |word| Dialect::Glsl.is_reserved(word));
         assert_eq!(changed("sample").as_deref(), Some("sample_"));
         assert_eq!(changed("gl_Position").as_deref(), Some("Position_"));
         assert_eq!(changed("a__b").as_deref(), Some("a_b_"));

@@ -3,7 +3,9 @@
 use lamplight_diagnostic::Diagnostic;
 
 use super::condition::{chains_of, directive};
+use super::dialect::Dialect;
 use super::expression::{LocalRole, Writer};
+use super::hlsl::made_array;
 use super::lines::{Indented, comment_text};
 use super::order::check_order;
 use super::outputs::{reads_outputs, write_zeros};
@@ -140,6 +142,9 @@ impl BodyWriter<'_> {
             Statement::Call(value) => self.value(value).map(Some),
             Statement::Break => Ok(Some("break".to_owned())),
             Statement::Continue => Ok(Some("continue".to_owned())),
+            Statement::Discard if self.writer.dialect() == Dialect::Msl => {
+                Ok(Some("discard_fragment()".to_owned()))
+            }
             Statement::Discard => Ok(Some("discard".to_owned())),
             _ => Ok(None),
         }
@@ -161,6 +166,7 @@ impl BodyWriter<'_> {
             self.writer.counters.insert(local.span.start, range);
         }
         let value = match &local.value {
+            Some(value) if self.is_list(value) => self.list(value)?,
             Some(value) => self.value(value)?,
             None => self.writer.zero(ty, local.span)?,
         };
@@ -208,8 +214,31 @@ impl BodyWriter<'_> {
         })
     }
 
+    /// Whether HLSL writes a value as a list, in a declaration.
+    fn is_list(&self, value: &Expression) -> bool {
+        self.writer.dialect() == Dialect::Hlsl && made_array(value).is_some()
+    }
+
+    fn list(&self, value: &Expression) -> Result<String, Diagnostic> {
+        check_order(&self.writer, value)?;
+        self.writer.array_list(
+            &value.ty,
+            made_array(value).unwrap_or_default(),
+            true,
+            self.out.depth,
+        )
+    }
+
     fn returned(&mut self, value: Option<&Expression>, is_tail: bool) -> Result<(), Diagnostic> {
         let Some(result) = self.result.clone() else {
+            if let Some(value) = value.filter(|value| self.is_list(value)) {
+                let (ty, lengths) = self.writer.names.declared_type(&value.ty, value.span)?;
+                let name = self.writer.free_local("made");
+                let list = self.list(value)?;
+                self.out.line(&format!("{ty} {name}{lengths} = {list};"));
+                self.out.line(&format!("return {name};"));
+                return Ok(());
+            }
             let text = value.map(|value| self.value(value)).transpose()?;
             let text = text.map_or("return;".to_owned(), |text| format!("return {text};"));
             self.out.line(&text);

@@ -1,12 +1,17 @@
 //! Textures and samplers: separate ones, as GLSL for Vulkan has them. Functions of a library take
 //! pairs by macros, which also have a form for combined ones.
 
+use std::collections::BTreeMap;
+
 use lamplight_diagnostic::Diagnostic;
 
+use super::dialect::Dialect;
 use super::expression::{Bound, LocalRole, POSTFIX, Writer, Written};
 use super::function::calls_builtin;
 use super::words::texture_name;
-use crate::tree::{Argument, Expression, ExpressionKind, Meaning, Scalar, Shape, Texture};
+use crate::tree::{
+    Argument, Expression, ExpressionKind, Item, Meaning, Node, Scalar, Shape, Texture,
+};
 use crate::tree::{TextureKind, Type};
 use crate::wesl::untranslated;
 
@@ -89,7 +94,7 @@ impl Writer<'_> {
             return Ok(format!("{}({name}, {sampler_name})", macros.sampler));
         }
         let shadow = if compares { "Shadow" } else { "" };
-        let kind = texture_name(ty, "sampler", texture.span)?;
+        let kind = texture_name(self.names.dialect, ty, "sampler", texture.span)?;
         Ok(format!("{kind}{shadow}({name}, {sampler_name})"))
     }
 
@@ -132,7 +137,8 @@ impl Writer<'_> {
     ) -> Result<Option<String>, Diagnostic> {
         match &value.kind {
             ExpressionKind::Call { arguments, .. }
-                if calls_builtin(value, &["textureDimensions"]) =>
+                if calls_builtin(value, &["textureDimensions"])
+                    && self.dialect() == Dialect::Glsl =>
             {
                 let sampler = self.combined(&arguments[0].value, None, indent)?;
                 let level = match arguments.get(1) {
@@ -168,6 +174,9 @@ impl Writer<'_> {
         value: &Expression,
         indent: usize,
     ) -> Written {
+        if self.dialect() != Dialect::Glsl {
+            return self.method_call(name, arguments, value, indent);
+        }
         if let Some(size) = self.signed_size(value, indent)? {
             let ty = self.names.type_name(&value.ty, value.span)?;
             return Ok(Bound(format!("{ty}({size})"), POSTFIX));
@@ -291,4 +300,25 @@ fn take_first<'a>(
         true => Err(untranslated(call.span, "a texture without coordinates")),
         false => Ok(rest.remove(0)),
     }
+}
+
+/// The functions in HLSL that give sizes of textures, for what some items call.
+pub fn size_functions(items: &[Node<Item>]) -> Result<BTreeMap<String, String>, Diagnostic> {
+    let mut found = BTreeMap::new();
+    let mut error = None;
+    for node in items {
+        let Item::Function(function) = &node.body else { continue };
+        super::visit::block_expressions(&function.body, &mut |value| {
+            let ExpressionKind::Call { arguments, .. } = &value.kind else { return };
+            if let Some(Type::Texture(texture)) = arguments.first().map(|one| &one.value.ty)
+                && calls_builtin(value, &["textureDimensions"])
+            {
+                match super::hlsl::size_function(texture, value.span) {
+                    Ok((guard, text)) => drop(found.insert(guard, text)),
+                    Err(refused) => error = Some(refused),
+                }
+            }
+        });
+    }
+    error.map_or(Ok(found), Err)
 }

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use lamplight_diagnostic::Diagnostic;
 use lamplight_diagnostic::source::Span;
 
+use super::dialect::Dialect;
 use super::facts::{Facts, StageField};
-use super::names::Names;
+use super::names::{Names, free_name};
 use super::place::{Pairs, Samplers};
 use super::range::{Counters, range_of};
 use super::words::macro_name;
@@ -61,6 +62,10 @@ impl Bound {
 pub type Written = Result<Bound, Diagnostic>;
 
 impl Writer<'_> {
+    pub fn dialect(&self) -> Dialect {
+        self.names.dialect
+    }
+
     /// An expression that needs no parentheses around it.
     pub fn whole(&self, value: &Expression, indent: usize) -> Result<String, Diagnostic> {
         Ok(self.bound(value, indent)?.0)
@@ -156,7 +161,9 @@ impl Writer<'_> {
     fn unary(&self, operator: Unary, inner: &Expression, indent: usize) -> Written {
         let sign = match operator {
             Unary::Negate => "-",
-            Unary::Not if matches!(inner.ty, Type::Vector(..)) => {
+            Unary::Not
+                if matches!(inner.ty, Type::Vector(..)) && self.dialect() == Dialect::Glsl =>
+            {
                 let inner = self.whole(inner.bare(), indent)?;
                 return Ok(Bound(format!("not({inner})"), POSTFIX));
             }
@@ -247,6 +254,11 @@ impl Writer<'_> {
         if arguments.is_empty() {
             return Ok(Bound(self.zero(ty, span)?, POSTFIX));
         }
+        if self.dialect() == Dialect::Hlsl
+            && let Some(made) = self.hlsl_construct(ty, arguments, is_broken, span, indent)?
+        {
+            return Ok(made);
+        }
         let name = self.names.type_name(ty, span)?;
         if let ([argument], Type::Scalar(scalar)) = (arguments, ty) {
             let text = self.scalar_conversion(*scalar, &argument.value, indent)?;
@@ -259,6 +271,20 @@ impl Writer<'_> {
             let text = self.in_range(&argument.value, ty, &size, indent)?;
             return Ok(Bound(format!("{name}({text})"), POSTFIX));
         }
+        let texts = self.parts(ty, arguments, is_broken, indent)?;
+        let is_braced = matches!(ty, Type::Structure(_) | Type::Array(..));
+        let brackets = if is_braced && self.dialect() == Dialect::Msl { "{}" } else { "()" };
+        Ok(Bound(listed_in(&name, brackets, &texts, is_broken, indent), POSTFIX))
+    }
+
+    /// The arguments of a constructor as texts.
+    pub fn parts(
+        &self,
+        ty: &Type,
+        arguments: &[Argument],
+        is_broken: bool,
+        indent: usize,
+    ) -> Result<Vec<(String, bool)>, Diagnostic> {
         let mut texts = Vec::new();
         for argument in arguments {
             let text = match self.signed_size(&argument.value, indent)? {
@@ -267,12 +293,30 @@ impl Writer<'_> {
             };
             texts.push((text, argument.is_on_new_line));
         }
-        Ok(Bound(listed(&name, &texts, is_broken, indent), POSTFIX))
+        Ok(texts)
+    }
+
+    /// A name that no local of the function has.
+    pub fn free_local(&self, wanted: &str) -> String {
+        let named = self.locals.values().filter_map(|role| match role {
+            LocalRole::Named(name) => Some(name.clone()),
+            _ => None,
+        });
+        free_name(wanted, &named.collect())
+    }
+
+    /// A number in each component of a vector.
+    pub fn splat(&self, ty: &Type, number: &str, span: Span) -> Result<Bound, Diagnostic> {
+        let name = self.names.type_name(ty, span)?;
+        Ok(match self.dialect() {
+            Dialect::Hlsl => Bound(format!("({name}){number}"), UNARY),
+            Dialect::Glsl | Dialect::Msl => Bound(format!("{name}({number})"), POSTFIX),
+        })
     }
 
     /// `int(x)` and its like. WGSL takes the nearest number of the type where GLSL leaves the result
     /// open.
-    fn scalar_conversion(
+    pub fn scalar_conversion(
         &self,
         scalar: Scalar,
         value: &Expression,
@@ -307,7 +351,9 @@ impl Writer<'_> {
         let is_high = range.most > most;
         let text = self.whole(value, indent)?;
         let wide = |number: &str| match size {
-            Type::Vector(count, _) => format!("vec{count}({number})"),
+            Type::Vector(..) => {
+                self.splat(size, number, value.span).map_or(String::new(), |one| one.0)
+            }
             _ => number.to_owned(),
         };
         Ok(match (is_low, is_high) {
@@ -322,6 +368,12 @@ impl Writer<'_> {
         let text = self.whole(value, indent)?;
         let name = match (target.scalar(), value.ty.scalar()) {
             (Some(to), Some(from)) if to == from => return self.bound(value, indent),
+            (Some(_), Some(_)) if self.dialect() == Dialect::Msl => {
+                format!("as_type<{}>", self.names.type_name(target, value.span)?)
+            }
+            (Some(Scalar::U32), Some(_)) if self.dialect() == Dialect::Hlsl => "asuint".to_owned(),
+            (Some(Scalar::I32), Some(_)) if self.dialect() == Dialect::Hlsl => "asint".to_owned(),
+            (Some(Scalar::F32), Some(_)) if self.dialect() == Dialect::Hlsl => "asfloat".to_owned(),
             (Some(Scalar::U32), Some(Scalar::F32)) => "floatBitsToUint".to_owned(),
             (Some(Scalar::I32), Some(Scalar::F32)) => "floatBitsToInt".to_owned(),
             (Some(Scalar::F32), Some(Scalar::U32)) => "uintBitsToFloat".to_owned(),
@@ -343,9 +395,12 @@ impl Writer<'_> {
             Type::Scalar(_) => "0.0".to_owned(),
             Type::Vector(_, scalar) => {
                 let zero = self.zero(&Type::Scalar(*scalar), span)?;
-                format!("{}({zero})", self.names.type_name(ty, span)?)
+                self.splat(ty, &zero, span)?.0
             }
-            Type::Matrix { .. } => format!("{}(0.0)", self.names.type_name(ty, span)?),
+            Type::Matrix { .. } => self.splat(ty, "0.0", span)?.0,
+            Type::Structure(_) | Type::Array(..) if self.dialect() == Dialect::Msl => {
+                format!("{}{{}}", self.names.type_name(ty, span)?)
+            }
             Type::Structure(path) if self.facts.needs_zero(path) => {
                 format!("{}()", self.names.zero(path))
             }
@@ -353,12 +408,21 @@ impl Writer<'_> {
                 let members = self.globals.members(path);
                 let zeros: Result<Vec<String>, Diagnostic> =
                     members.iter().map(|member| self.zero(&member.ty, span)).collect();
-                format!("{}({})", self.names.item(path), zeros?.join(", "))
+                let name = match self.dialect() {
+                    Dialect::Hlsl => self.names.maker(path),
+                    Dialect::Glsl | Dialect::Msl => self.names.item(path),
+                };
+                format!("{name}({})", zeros?.join(", "))
             }
             Type::Array(element, crate::tree::Count::Fixed(count)) if *count <= LONGEST_ZERO => {
                 let zero = self.zero(element, span)?;
                 let zeros = vec![zero; *count as usize].join(", ");
-                format!("{}({zeros})", self.names.type_name(ty, span)?)
+                match self.dialect() {
+                    Dialect::Hlsl => format!("{{{zeros}}}"),
+                    Dialect::Glsl | Dialect::Msl => {
+                        format!("{}({zeros})", self.names.type_name(ty, span)?)
+                    }
+                }
             }
             other => return Err(untranslated(span, format!("the zero of {other}"))),
         })
@@ -469,7 +533,18 @@ fn stage_member(fields: &[StageField], member: &str, span: Span) -> Written {
 
 /// A call with its arguments, on lines of their own where they were.
 pub fn listed(name: &str, arguments: &[(String, bool)], is_broken: bool, indent: usize) -> String {
-    let mut text = format!("{name}(");
+    listed_in(name, "()", arguments, is_broken, indent)
+}
+
+/// The same with other brackets.
+pub fn listed_in(
+    name: &str,
+    brackets: &str,
+    arguments: &[(String, bool)],
+    is_broken: bool,
+    indent: usize,
+) -> String {
+    let mut text = format!("{name}{}", &brackets[..1]);
     for (index, (argument, is_on_new_line)) in arguments.iter().enumerate() {
         if index > 0 {
             text.push(',');
@@ -484,8 +559,7 @@ pub fn listed(name: &str, arguments: &[(String, bool)], is_broken: bool, indent:
     if is_broken {
         text += &format!("\n{}", "    ".repeat(indent));
     }
-    text.push(')');
-    text
+    text + &brackets[1..]
 }
 
 /// A number as GLSL writes it.

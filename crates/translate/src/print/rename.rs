@@ -10,7 +10,7 @@ use lamplight_diagnostic::Diagnostic;
 use lamplight_diagnostic::source::Span;
 
 use super::expression::LocalRole;
-use super::names::{Names, changed_name, free_name, is_hidden};
+use super::names::{Names, changed_name, free_name};
 use super::visit::{block_expressions, within};
 use crate::tree::{Block, Callee, Count, ExpressionKind, Function, ItemPath, Local, Meaning, Node};
 use crate::tree::{Statement, Type};
@@ -46,7 +46,7 @@ pub fn local_names(
     for Declared { name, span, is_inner } in found.all {
         let key = (name.clone(), is_inner);
         let known = changed.get(&key).cloned();
-        let wanted = match changed_name(&name, is_hidden) {
+        let wanted = match changed_name(&name, |word| around.names.dialect.is_hidden(word)) {
             Some(wanted) => Some(wanted),
             None if is_inner => Some(format!("{}_inner", name.trim_end_matches('_'))),
             None if foreign.contains(&name) => Some(format!("{}_", name.trim_end_matches('_'))),
