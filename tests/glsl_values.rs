@@ -14,9 +14,12 @@ use lamplight_glsl::translate;
 use lamplight_glsl::tree::Stage;
 use lamplight_testing::random::Random;
 use libtest_mimic::{Failed, Trial};
+use rayon::prelude::*;
 
 /// How many random programs the tests make; `LAMPLIGHT_GLSL_PROGRAMS` asks for another number.
 const PROGRAMS: u64 = 200;
+/// How many programs one device runs.
+const PART: u64 = 100;
 /// The seed of the first program; `LAMPLIGHT_GLSL_SEED` chooses another one.
 const SEED: u64 = 1;
 
@@ -37,15 +40,24 @@ fn number_of(variable: &str, default: u64) -> u64 {
 fn random_programs() -> Result<(), Failed> {
     let first = number_of("LAMPLIGHT_GLSL_SEED", SEED);
     let count = number_of("LAMPLIGHT_GLSL_PROGRAMS", PROGRAMS);
-    let device = Device::open()?;
-    let mut wrong = Vec::new();
-    for seed in first..first + count {
-        let text = program::write_program(&mut Random(seed.wrapping_mul(0x9e37_79b9)));
-        if let Err(message) = compare(&device, &text) {
-            wrong.push(format!("seed {seed}: {message}\n{text}"));
+    println!("seed {first}: {count} programs");
+    // Each thread has a device, so that no error is another one's.
+    let compared = |(from, until): (u64, u64)| -> Result<Vec<String>, String> {
+        let device = Device::open()?;
+        let mut wrong = Vec::new();
+        for seed in from..until {
+            let text = program::write_program(&mut Random(seed.wrapping_mul(0x9e37_79b9)));
+            if let Err(message) = compare(&device, &text) {
+                wrong.push(format!("seed {seed}: {message}\n{text}"));
+            }
         }
-    }
-    report(&wrong, count as usize)
+        Ok(wrong)
+    };
+    let parts: Vec<(u64, u64)> = (0..count.div_ceil(PART))
+        .map(|part| (first + part * PART, first + count.min((part + 1) * PART)))
+        .collect();
+    let wrong: Vec<Vec<String>> = parts.into_par_iter().map(compared).collect::<Result<_, _>>()?;
+    report(&wrong.concat(), count as usize)
 }
 
 /// Programs that were written for one construct each.

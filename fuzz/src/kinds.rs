@@ -16,6 +16,7 @@ use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::compose::{self, Keep, Options};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
+use lamplight::glsl::tree::Stage;
 use lamplight::link::{self, Linker};
 use lamplight::permute::{Manifest, Quoted, Setting, Settings, Space, cover, key, lock, manifest};
 use lamplight::project;
@@ -52,6 +53,12 @@ pub const KINDS: &[Kind] = &[
         corpus: &[("crates/compose/tests/compose_glsl", ".glsl"), ("shaderlib", ".glsl")],
         words: GLSL,
         run: glsl,
+    },
+    Kind {
+        name: "translate",
+        corpus: &[("crates/glsl/tests/translated", ""), ("tests/opengl_scene", "s")],
+        words: TRANSLATED,
+        run: translate,
     },
     Kind {
         name: "manifest",
@@ -92,6 +99,13 @@ const GLSL: &str = "#if #ifdef #ifndef #elif #else #endif #define #undef #includ
     uniform layout(location=0) in out struct const if else for while do switch case return discard __LINE__ __VERSION__ \
     GL_GOOGLE_include_directive <lamplight/math/safe.glsl> \"main.frag.glsl\" TWO_SIDED SHADOW SHADOW_NONE MAX_LIGHTS 0 1 \
     1.0 0x80000000 99999999999999999999 -1 << >> / % ? : \u{feff} \u{0} é \r\n";
+const TRANSLATED: &str = "void main float int uint bool double vec2 vec3 vec4 ivec2 uvec4 bvec3 mat3 mat2x4 sampler2D \
+    samplerCubeShadow image2D texture2D struct in out inout const uniform buffer shared varying attribute flat centroid \
+    layout( location binding set = std140 row_major push_constant local_size_x constant_id offset ) precision highp precise \
+    if else for while do switch case default : break continue return discard ( ) [ ] { } < > ; , . = += <<= == != && || ^^ ! \
+    ~ ++ -- ? % & | ^ << >> - + * / 0 1 2u 0x80000000 99999999999999999999 1.0 .5 1e999 1.f 0.5lf gl_Position gl_FragCoord \
+    gl_PerVertex texture textureLod texelFetch atomicAdd barrier mix mod inverse isnan .length() .xyzw .rgba \n #version 330 \
+    #extension // /* */ \u{feff} \u{0} é \r\n";
 const MANIFEST: &str = "[program.a] [program.a.axis.b] [[program.a.constraint]] wesl glsl targets axis values default mode \
     require doc only exclude include = [ ] { } , . \" ' \"\"\" true false 0 1 -1 9223372036854775807 \"spec\" \"static\" \
     \"dynamic\" \"*\" == != => && || ! ( ) in >= < none vertex fragment # \n \\u00e9 \\ \u{feff} \u{0}";
@@ -121,6 +135,22 @@ fn wesl(bytes: &[u8]) -> String {
 
 fn glsl(bytes: &[u8]) -> String {
     composed(bytes, "main.frag.glsl", Language::Glsl)
+}
+
+/// Translates a preprocessed text. What it mentions says for which stage it is.
+fn translate(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let stage = match &*text {
+        text if text.contains("gl_Position") => Stage::Vertex,
+        text if text.contains("local_size") => Stage::Compute,
+        _ => Stage::Fragment,
+    };
+    let mut sources = SourceSet::default();
+    let id = sources.add("main", &*text);
+    match lamplight::glsl::translate(&text, stage, id, Default::default()) {
+        Ok(written) => written.text,
+        Err(problems) => render_all(&sources, &problems),
+    }
 }
 
 /// Composes and validates a text, with its entry points only and with everything in it.

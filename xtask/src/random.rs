@@ -1,22 +1,26 @@
 //! `cargo xtask random`: random programs, graphics and compute, whose outputs in all targets are run
-//! and compared with the evaluator, by the tests `link::random` and `compute::random`.
+//! and compared with the evaluator, by the tests `link::random` and `compute::random`; and programs in
+//! GLSL, whose translation is compared with glslang's code by `glsl_values::random`.
 
 use std::time::{Instant, SystemTime};
 
 use xtask::{CommandFailure, CommandResult, process};
 
-const USAGE: &str = "usage: cargo xtask random [--programs N] [--seed N] [--kind graphics|compute]
+const USAGE: &str =
+    "usage: cargo xtask random [--programs N] [--seed N] [--kind graphics|compute|glsl]
 
-  --programs N  how many in all, half of each kind (20000)
+  --programs N  how many in all, a third of each kind (20000)
   --seed N      the seed of the first program of each kind (the time)
   --kind KIND   only this kind
 
-Findings are left in target/fuzz/link/ and target/fuzz/compute/, and give exit code 3.";
+Findings are left in target/fuzz/link/ and target/fuzz/compute/, those of glsl are printed, and they
+give exit code 3.";
 
 /// The kinds of programs: the prefix of the test's variables, the test, and other variables.
-const KINDS: [Kind; 2] = [
+const KINDS: [Kind; 3] = [
     Kind { name: "graphics", prefix: "LAMPLIGHT_LINK", test: "link::random" },
     Kind { name: "compute", prefix: "LAMPLIGHT_COMPUTE", test: "compute::random" },
+    Kind { name: "glsl", prefix: "LAMPLIGHT_GLSL", test: "glsl_values::random" },
 ];
 
 struct Kind {
@@ -26,7 +30,7 @@ struct Kind {
     test: &'static str,
 }
 
-/// Runs both kinds, even if the first one has findings.
+/// Runs all kinds, even if the first one has findings.
 pub fn run(arguments: &[String]) -> CommandResult {
     let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
     let (mut programs, mut seed) = (20_000, now.map_or(1, |since| since.as_secs()));
