@@ -20,6 +20,11 @@ impl Error {
         Self { code, message: message.into(), span: Span::UNDEFINED }
     }
 
+    /// What an observer ends a run with that has shown enough.
+    pub fn stopped() -> Self {
+        Self::new(codes::EVAL_INTERNAL, "the run was stopped")
+    }
+
     pub(super) fn unsupported(what: impl std::fmt::Display) -> Self {
         Self::new(codes::EVAL_UNSUPPORTED, format!("the CPU executor does not support {what}"))
     }

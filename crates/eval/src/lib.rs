@@ -3,7 +3,8 @@
 //!
 //! [`Program::new`] lowers a module once; [`Machine::new`] gives it memory; [`Machine::call`] runs
 //! a function on scalars, [`Machine::quad`] on the four fragments that derivatives need. Arguments
-//! and results are flattened to scalars in the order of declaration.
+//! and results are flattened to scalars in the order of declaration. An [`Observer`] sees every
+//! instruction of a run, for which [`Program::with_names`] keeps what the author called its values.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,22 +21,30 @@
 
 mod batch;
 mod code;
+mod dual;
 mod error;
+mod flow;
 mod layout;
 mod lower;
 mod machine;
+mod names;
 mod number;
 mod operation;
 mod program;
 mod resources;
+mod traced;
 
 pub use batch::Batch;
 pub use code::Compare;
+pub use dual::{DUAL_SEEDS, Dual};
 pub use error::{Error, Finding, FindingKind};
+pub use flow::SlotRange;
 pub use layout::{MAX_SLOTS, SlotKind};
-pub use machine::{LOOP_LIMIT, Machine};
+pub use machine::{Action, Executed, LOOP_LIMIT, Machine, Observer, TexelRead, TextureRead};
+pub use names::{Shape, Variable, VariableKind, VariablePlace};
 pub use number::{Bounded, Number, half_from, half_to};
 pub use program::{Branch, CoveragePoint, Function, FunctionId, Program};
 pub use resources::{
     Address, Filter, MipLevel, Resources, Sampler, Texels, Texture, TextureDimension,
 };
+pub use traced::Traced;

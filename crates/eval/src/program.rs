@@ -4,6 +4,7 @@ use super::code::{Access, Instruction, JumpTable, Slot};
 use super::error::Error;
 use super::layout::SlotKind;
 use super::lower;
+use super::names::Variable;
 use naga::{Handle, Span, Type, UniqueArena};
 
 /// A module ready to run on any [`super::Number`]. It borrows nothing and may be shared between
@@ -24,11 +25,20 @@ pub struct Program {
     pub(super) points: Vec<CoveragePoint>,
     pub(super) globals: Vec<Global>,
     pub(super) types: UniqueArena<Type>,
+    /// What authors named, if the program was lowered with names.
+    pub(super) variables: Vec<Variable>,
 }
 
 /// Index of a function of a [`Program`]: functions first, entry points after them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FunctionId(pub(super) u32);
+
+impl FunctionId {
+    /// Its place among the functions of [`Program::functions`].
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
 
 impl From<Handle<naga::Function>> for FunctionId {
     /// The function of that handle in the module the program was lowered from.
@@ -150,7 +160,35 @@ impl Program {
     /// # Errors
     /// `eval-too-large` if the module-scope values take too much memory.
     pub fn new(module: &naga::Module, info: &naga::valid::ModuleInfo) -> Result<Self, Error> {
-        lower::lower(module, info)
+        lower::lower(module, info, false)
+    }
+
+    /// As [`Self::new`], with [`Self::variables`].
+    ///
+    /// # Errors
+    /// Those of [`Self::new`].
+    pub fn with_names(
+        module: &naga::Module,
+        info: &naga::valid::ModuleInfo,
+    ) -> Result<Self, Error> {
+        lower::lower(module, info, true)
+    }
+
+    /// What the text names, in the order of functions and, within each, of declaration.
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// The place of each instruction in the text that naga parsed.
+    pub fn spans(&self) -> &[Span] {
+        &self.spans
+    }
+
+    /// The function whose instructions begin at this one.
+    pub(super) fn function_at(&self, entry: u32) -> Option<FunctionId> {
+        // One that could not be lowered has no instructions, so it shares its first with the next.
+        let after = self.functions.partition_point(|function| function.entry <= entry);
+        after.checked_sub(1).map(|index| FunctionId(index as u32))
     }
 
     /// The function or entry point of that name.

@@ -4,6 +4,7 @@
 
 mod atomic;
 mod expression;
+mod named;
 mod operator;
 mod statement;
 
@@ -39,6 +40,8 @@ struct ProgramBuilder<'m> {
     literals: BTreeMap<(u8, u64), Slot>,
     globals: Vec<Result<Loc, Error>>,
     constants: Vec<Option<Loc>>,
+    /// Whether the program gets the names of the text.
+    has_names: bool,
 }
 
 /// The function, or the module-scope constants, that are being lowered.
@@ -61,10 +64,14 @@ struct LoweredBody<'b, 'm> {
 }
 
 /// Lowers every function of the module.
-pub(super) fn lower(module: &Module, info: &ModuleInfo) -> Result<Program, Error> {
+pub(super) fn lower(module: &Module, info: &ModuleInfo, has_names: bool) -> Result<Program, Error> {
     let mut build = ProgramBuilder::new(module);
+    build.has_names = has_names;
     build.constants(info)?;
     build.globals();
+    if has_names {
+        build.name_globals();
+    }
     for (handle, function) in module.functions.iter() {
         build.function(function.name.clone().unwrap_or_default(), function, &info[handle]);
     }
@@ -89,6 +96,7 @@ impl<'m> ProgramBuilder<'m> {
             points: Vec::new(),
             globals: Vec::new(),
             types: module.types.clone(),
+            variables: Vec::new(),
         };
         let layout = Layout::new(&module.types);
         Self {
@@ -99,6 +107,7 @@ impl<'m> ProgramBuilder<'m> {
             literals: BTreeMap::new(),
             globals: Vec::new(),
             constants: Vec::new(),
+            has_names: false,
         }
     }
 
@@ -319,7 +328,7 @@ impl<'m> ProgramBuilder<'m> {
             .collect();
         let mut body = LoweredBody::new(self, &function.expressions, types);
         (body.function, body.arguments) = (index as u32, slots);
-        body.whole(function)
+        body.whole(function).map(|()| body.name_variables(function))
     }
 
     /// A parameter with the kinds of its scalars. The value that a pointer points to is also part

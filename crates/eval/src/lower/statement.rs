@@ -124,7 +124,9 @@ impl LoweredBody<'_, '_> {
     fn evaluate_all(&mut self, range: naga::Range<Expression>) -> Result<(), Error> {
         let statement = self.span;
         for handle in range {
-            self.span = self.expressions.get_span(handle);
+            // Loads that nobody wrote have no place of their own.
+            let own = self.expressions.get_span(handle);
+            self.span = if own.is_defined() { own } else { statement };
             self.evaluate(handle)?;
         }
         self.span = statement;

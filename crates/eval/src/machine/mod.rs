@@ -8,6 +8,7 @@
 //! What instructions compute is in [`compute`], and what textures give in [`texture`].
 
 mod compute;
+mod observe;
 mod texture;
 mod watch;
 mod workgroup;
@@ -22,7 +23,9 @@ use compute::compute;
 pub(crate) use compute::{convert_slot, extract_bits, geometry, insert_bits, pack, word1, word2};
 use lamplight_diagnostic::codes;
 use lamplight_files::limits::EVAL_STEPS;
+pub use observe::{Action, Executed, Observer};
 pub(crate) use texture::{Slots, apply_access, coordinate_of, gradient_of};
+pub use texture::{TexelRead, TextureRead};
 pub(crate) use watch::Watch;
 
 /// How many loop iterations one call may make unless set otherwise, all loops together.
@@ -213,9 +216,7 @@ impl<'p, N: Number> Machine<'p, N> {
 
     /// Runs code on the single lane until it ends.
     fn run(&mut self, entry: u32) -> Result<(), Error> {
-        (self.lane.pc, self.lane.trips, self.lane.killed) = (entry, 0, false);
-        self.lane.steps = 0;
-        self.lane.calls.clear();
+        self.lane.start(entry);
         match self.advance()? {
             true => Ok(()),
             false => Err(needs_workgroup(self.program, self.lane.pc)),
@@ -418,52 +419,72 @@ enum LaneStop {
 /// Runs until the function returns or needs its neighbours.
 fn run_lane<N: Number>(env: Env, lane: &mut Lane<N>, watch: &mut Watch) -> Result<LaneStop, Error> {
     loop {
-        let at = lane.pc;
-        let instruction = lane.fetch(env)?;
-        match *instruction {
-            Instruction::Jump { to } => lane.pc = to,
-            Instruction::JumpUnless { condition, to } if lane.word(condition) == 0 => lane.pc = to,
-            Instruction::JumpUnless { .. } => {}
-            Instruction::Mark { point } => watch.hits[point as usize] += 1,
-            Instruction::Trip => {
-                lane.trips += 1;
-                if lane.trips > env.loop_limit {
-                    return Err(endless_loop(env, at));
-                }
-            }
-            Instruction::Switch { selector, table } => {
-                lane.pc = jump_target(env.program, table, lane.word(selector))
-            }
-            Instruction::Call { to } => {
-                lane.calls.push(lane.pc);
-                lane.pc = to;
-            }
-            Instruction::Return => match lane.calls.pop() {
-                Some(to) => lane.pc = to,
-                None => return Ok(LaneStop::Done),
-            },
-            Instruction::Kill => lane.killed = true,
-            Instruction::Barrier => return Ok(LaneStop::Barrier),
-            Instruction::Derivative { .. } => {
-                lane.pc = at;
-                return Ok(LaneStop::Quad);
-            }
-            Instruction::Image { access }
-                if env.quad && env.program.images[access as usize].implicit() =>
-            {
-                lane.pc = at;
-                return Ok(LaneStop::Quad);
-            }
-            Instruction::Image { access } => {
-                let access = &env.program.images[access as usize];
-                texture::apply_access(env, access, &mut lane.memory[..], None, (at, watch))?
-            }
-            _ => lane.compute(instruction, at, watch),
+        if let Some(stop) = step_lane(env, lane, watch)? {
+            return Ok(stop);
         }
     }
 }
 
+/// Runs one instruction. An observed run is made of the same steps.
+#[inline(always)]
+fn step_lane<N: Number>(
+    env: Env,
+    lane: &mut Lane<N>,
+    watch: &mut Watch,
+) -> Result<Option<LaneStop>, Error> {
+    let at = lane.pc;
+    let instruction = lane.fetch(env)?;
+    match *instruction {
+        Instruction::Jump { to } => lane.pc = to,
+        Instruction::JumpUnless { condition, to } if lane.word(condition) == 0 => lane.pc = to,
+        Instruction::JumpUnless { .. } => {}
+        Instruction::Mark { point } => watch.hits[point as usize] += 1,
+        Instruction::Trip => {
+            lane.trips += 1;
+            if lane.trips > env.loop_limit {
+                return Err(endless_loop(env, at));
+            }
+        }
+        Instruction::Switch { selector, table } => {
+            lane.pc = jump_target(env.program, table, lane.word(selector))
+        }
+        Instruction::Call { to } => {
+            lane.calls.push(lane.pc);
+            lane.pc = to;
+        }
+        Instruction::Return => match lane.calls.pop() {
+            Some(to) => lane.pc = to,
+            None => return Ok(Some(LaneStop::Done)),
+        },
+        Instruction::Kill => lane.killed = true,
+        Instruction::Barrier => return Ok(Some(LaneStop::Barrier)),
+        Instruction::Derivative { .. } => {
+            lane.pc = at;
+            return Ok(Some(LaneStop::Quad));
+        }
+        Instruction::Image { access }
+            if env.quad && env.program.images[access as usize].implicit() =>
+        {
+            lane.pc = at;
+            return Ok(Some(LaneStop::Quad));
+        }
+        Instruction::Image { access } => {
+            let access = &env.program.images[access as usize];
+            texture::apply_access(env, access, &mut lane.memory[..], None, (at, watch))?
+        }
+        _ => lane.compute(instruction, at, watch),
+    }
+    Ok(None)
+}
+
 impl<N: Number> Lane<N> {
+    /// Begins a call at an instruction.
+    fn start(&mut self, entry: u32) {
+        (self.pc, self.trips, self.killed) = (entry, 0, false);
+        self.steps = 0;
+        self.calls.clear();
+    }
+
     /// Fetches the next instruction, advances `pc` and counts the steps.
     #[inline(always)]
     fn fetch<'e>(&mut self, env: Env<'e>) -> Result<&'e Instruction, Error> {
@@ -539,6 +560,15 @@ impl<N: Number> Machine<'_, N> {
         id: FunctionId,
         arguments: [&[N]; 4],
     ) -> Result<[Vec<N>; 4], Error> {
+        self.run_quad_by(id, arguments, &mut Unwatched)
+    }
+
+    fn run_quad_by(
+        &mut self,
+        id: FunctionId,
+        arguments: [&[N]; 4],
+        runner: &mut impl LaneRunner<N>,
+    ) -> Result<[Vec<N>; 4], Error> {
         let program = self.program;
         let mut lanes = std::mem::take(&mut self.quad);
         lanes.resize_with(4, || self.lane.clone());
@@ -548,12 +578,10 @@ impl<N: Number> Machine<'_, N> {
             self.check_buffers(function)?;
             begin_lane(program, lane, true);
             place_arguments(lane, function, arguments);
-            (lane.pc, lane.trips, lane.killed) = (function.entry, 0, false);
-            lane.steps = 0;
-            lane.calls.clear();
+            lane.start(function.entry);
             entry = Some(function);
         }
-        let outcomes = self.together(&mut lanes);
+        let outcomes = self.together(&mut lanes, runner);
         self.killed = [0, 1, 2, 3].map(|index| lanes.get(index).is_some_and(|lane| lane.killed));
         let results = std::array::from_fn(|index| {
             entry
@@ -569,7 +597,11 @@ impl<N: Number> Machine<'_, N> {
         self.killed
     }
 
-    fn together(&mut self, lanes: &mut [Lane<N>]) -> Result<(), Error> {
+    fn together(
+        &mut self,
+        lanes: &mut [Lane<N>],
+        runner: &mut impl LaneRunner<N>,
+    ) -> Result<(), Error> {
         let env = Env {
             program: self.program,
             bound: &self.resolved,
@@ -580,7 +612,7 @@ impl<N: Number> Machine<'_, N> {
         loop {
             let mut waiting = Vec::new();
             for index in (0..4).filter(|index| running[*index]).collect::<Vec<_>>() {
-                match run_lane(env, &mut lanes[index], &mut self.watch)? {
+                match runner.run(env, index, &mut lanes[index], &mut self.watch)? {
                     LaneStop::Done => running[index] = false,
                     LaneStop::Quad => waiting.push(index),
                     LaneStop::Barrier => return Err(needs_workgroup(env.program, lanes[index].pc)),
@@ -604,19 +636,82 @@ impl<N: Number> Machine<'_, N> {
             if group.len() < 4 {
                 self.watch.note(FindingKind::DivergentDerivative, at);
             }
-            match self.program.code[at as usize] {
-                Instruction::Derivative { axis, coarse, n, to, a } => {
-                    for i in 0..u32::from(n) {
-                        derivative(lanes, &group, axis, coarse, (to + i) as usize, a.at(i));
-                    }
-                }
-                Instruction::Image { access } => {
-                    texture::run_quad(env, access, lanes, &group, &mut self.watch)?
-                }
-                _ => {}
+            let gradients = met(env, at, lanes, &group, &mut self.watch)?;
+            for &index in &group {
+                let lane = &mut lanes[index];
+                runner.met(env, index, lane, &mut self.watch, gradients[index])?;
+                lane.pc += 1;
             }
-            group.iter().for_each(|index| lanes[*index].pc += 1);
         }
+    }
+}
+
+/// Runs an instruction for the lanes that have met at it. Gives the gradients of what these read of a
+/// texture.
+fn met<N: Number>(
+    env: Env<'_>,
+    at: u32,
+    lanes: &mut [Lane<N>],
+    group: &[usize],
+    watch: &mut Watch,
+) -> Result<[Option<texture::Gradient>; 4], Error> {
+    match env.program.code[at as usize] {
+        Instruction::Derivative { axis, coarse, n, to, a } => {
+            for i in 0..u32::from(n) {
+                derivative(lanes, group, axis, coarse, (to + i) as usize, a.at(i));
+            }
+            Ok([None; 4])
+        }
+        Instruction::Image { access } => texture::run_quad(env, access, lanes, group, watch),
+        _ => Ok([None; 4]),
+    }
+}
+
+/// What runs the lanes of a quad.
+trait LaneRunner<N> {
+    /// Runs a lane until it ends or needs the others.
+    fn run(
+        &mut self,
+        env: Env<'_>,
+        index: usize,
+        lane: &mut Lane<N>,
+        watch: &mut Watch,
+    ) -> Result<LaneStop, Error>;
+
+    /// Called after the instruction at `pc` of the lane, which needed the others.
+    fn met(
+        &mut self,
+        env: Env<'_>,
+        index: usize,
+        lane: &mut Lane<N>,
+        watch: &mut Watch,
+        gradient: Option<texture::Gradient>,
+    ) -> Result<(), Error>;
+}
+
+/// Runs lanes that nobody observes.
+struct Unwatched;
+
+impl<N: Number> LaneRunner<N> for Unwatched {
+    fn run(
+        &mut self,
+        env: Env<'_>,
+        _: usize,
+        lane: &mut Lane<N>,
+        watch: &mut Watch,
+    ) -> Result<LaneStop, Error> {
+        run_lane(env, lane, watch)
+    }
+
+    fn met(
+        &mut self,
+        _: Env<'_>,
+        _: usize,
+        _: &mut Lane<N>,
+        _: &mut Watch,
+        _: Option<texture::Gradient>,
+    ) -> Result<(), Error> {
+        Ok(())
     }
 }
 

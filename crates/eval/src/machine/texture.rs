@@ -6,6 +6,11 @@
 //! of a face of a cube. `shim/runtime.cpp` of the package `tools` reads textures in the same way:
 //! change both or none.
 
+mod described;
+
+pub(super) use described::describe;
+pub use described::{TexelRead, TextureRead};
+
 use crate::code::{Access, DerivativeDirection, Lod, TextureOp};
 use crate::error::{Error, FindingKind};
 use crate::machine::watch::Watch;
@@ -18,7 +23,7 @@ use lamplight_diagnostic::codes;
 const LEVEL_STEP: f64 = 1.0 / 64.0;
 
 /// The difference of the coordinate to the neighbour in x and to the one in y.
-type Gradient = [[f64; 3]; 2];
+pub type Gradient = [[f64; 3]; 2];
 
 /// The instruction, and where to report what happens there.
 type WatchNotes<'w> = (u32, &'w mut Watch);
@@ -42,24 +47,26 @@ impl<N: Copy> Slots<N> for [N] {
 }
 
 /// Runs an access whose level of detail comes from the gradients within a quad, for the lanes that
-/// reached it.
+/// reached it. Gives the gradients of these.
 pub(super) fn run_quad<N: Number>(
     env: Env,
     index: u32,
     lanes: &mut [Lane<N>],
     group: &[usize],
     watch: &mut Watch,
-) -> Result<(), Error> {
+) -> Result<[Option<Gradient>; 4], Error> {
     let access = &env.program.images[index as usize];
     let coordinates: [Option<[f64; 3]>; 4] = std::array::from_fn(|lane| {
         group.contains(&lane).then(|| coordinate_of(access, &lanes[lane].memory[..]))
     });
+    let mut gradients = [None; 4];
     for &lane in group {
-        let gradient = gradient_of(&coordinates, lane);
+        let gradient = Some(gradient_of(&coordinates, lane));
         let pc = lanes[lane].pc;
-        apply_access(env, access, &mut lanes[lane].memory[..], Some(gradient), (pc, watch))?;
+        apply_access(env, access, &mut lanes[lane].memory[..], gradient, (pc, watch))?;
+        gradients[lane] = gradient;
     }
-    Ok(())
+    Ok(gradients)
 }
 
 pub fn coordinate_of<N: Number>(access: &Access, m: &(impl Slots<N> + ?Sized)) -> [f64; 3] {
@@ -175,39 +182,14 @@ fn sample_texture<N: Number>(
     gradient: Option<Gradient>,
     notes: WatchNotes,
 ) -> Result<(), Error> {
-    let TextureOp::Sample { sampler: slot, gather, level, offset, reference, clamp_to_edge } =
-        access.ask
-    else {
-        return Ok(());
-    };
-    let sampler = bound_sampler(env, m.get(slot).word())?;
-    let sampler =
-        if clamp_to_edge { Sampler { address: Default::default(), ..*sampler } } else { *sampler };
-    let coordinate = values_at(m, access.coordinate, access.dimensions);
-    let footprint = Footprint {
-        texture,
-        sampler: &sampler,
-        level: 0,
-        filter: Filter::Linear,
-        point: sample_point(access, texture, m, coordinate),
-        shift: texel_offset(access, m, offset),
-        reference: reference.map(|slot| m.get(slot)),
-    };
+    let TextureOp::Sample { gather, .. } = access.ask else { return Ok(()) };
+    let sampler = chosen_sampler(env, access, m)?;
+    let footprint = footprint_of(access, texture, &sampler, m);
     let mut doubt = false;
     let result = if let Some(component) = gather {
         gathered_component(&footprint, usize::from(component), &mut doubt)
     } else {
-        let slopes = match level {
-            Lod::Gradient(x, y) => Some([x, y].map(|slot| values_at(m, slot, access.dimensions))),
-            _ => gradient,
-        };
-        let level = match level {
-            Lod::Zero => 0.0,
-            _ if clamp_to_edge => 0.0,
-            Lod::Exact(slot) => m.get(slot).value(),
-            Lod::Bias(slot) => detail_level(texture, coordinate, slopes) + m.get(slot).value(),
-            Lod::Auto | Lod::Gradient(..) => detail_level(texture, coordinate, slopes),
-        };
+        let level = asked_level(access, texture, m, gradient);
         between_levels(&footprint, level, &mut doubt)
     };
     if doubt {
@@ -215,6 +197,63 @@ fn sample_texture<N: Number>(
     }
     store_result(m, access, result);
     Ok(())
+}
+
+/// The sampler of an access, as the access uses it.
+fn chosen_sampler<N: Number>(
+    env: Env,
+    access: &Access,
+    m: &(impl Slots<N> + ?Sized),
+) -> Result<Sampler, Error> {
+    let TextureOp::Sample { sampler, clamp_to_edge, .. } = access.ask else {
+        return Ok(Sampler::default());
+    };
+    let sampler = *bound_sampler(env, m.get(sampler).word())?;
+    Ok(if clamp_to_edge { Sampler { address: Default::default(), ..sampler } } else { sampler })
+}
+
+/// What a sample depends on beside its level.
+fn footprint_of<'t, N: Number>(
+    access: &Access,
+    texture: &'t Texture,
+    sampler: &'t Sampler,
+    m: &(impl Slots<N> + ?Sized),
+) -> Footprint<'t, N> {
+    let (offset, reference) = match access.ask {
+        TextureOp::Sample { offset, reference, .. } => (offset, reference),
+        _ => (None, None),
+    };
+    Footprint {
+        texture,
+        sampler,
+        level: 0,
+        filter: Filter::Linear,
+        point: sample_point(access, texture, m, coordinate_of(access, m)),
+        shift: texel_offset(access, m, offset),
+        reference: reference.map(|slot| m.get(slot)),
+    }
+}
+
+/// The level that a sample asks for.
+fn asked_level<N: Number>(
+    access: &Access,
+    texture: &Texture,
+    m: &(impl Slots<N> + ?Sized),
+    gradient: Option<Gradient>,
+) -> f64 {
+    let TextureOp::Sample { level, clamp_to_edge, .. } = access.ask else { return 0.0 };
+    let coordinate = coordinate_of(access, m);
+    let slopes = match level {
+        Lod::Gradient(x, y) => Some([x, y].map(|slot| values_at(m, slot, access.dimensions))),
+        _ => gradient,
+    };
+    match level {
+        Lod::Zero => 0.0,
+        _ if clamp_to_edge => 0.0,
+        Lod::Exact(slot) => m.get(slot).value(),
+        Lod::Bias(slot) => detail_level(texture, coordinate, slopes) + m.get(slot).value(),
+        Lod::Auto | Lod::Gradient(..) => detail_level(texture, coordinate, slopes),
+    }
 }
 
 /// The place that the coordinate and the layer of an access name.
@@ -595,8 +634,13 @@ impl<N> Footprint<'_, N> {
 
     /// The texel at column and row (and slice), addressed as the sampler says.
     fn texel(&self, level: &MipLevel, at: [i64; 3]) -> [f64; 4] {
+        level.texel(self.addressed(level, at)).unwrap_or_default()
+    }
+
+    /// Where that texel is in its level.
+    fn addressed(&self, level: &MipLevel, at: [i64; 3]) -> [i64; 3] {
         let moved: [i64; 3] = std::array::from_fn(|i| at[i].saturating_add(self.shift[i]));
-        let place = match self.point.shape {
+        match self.point.shape {
             TextureDimension::Cube => self.around(level, moved),
             TextureDimension::D3 => [0, 1, 2].map(|i| {
                 wrap_address(
@@ -613,8 +657,7 @@ impl<N> Footprint<'_, N> {
                     layer,
                 ]
             }
-        };
-        level.texel(place).unwrap_or_default()
+        }
     }
 
     /// The position of a texel of a cube. Beyond the edge of its face it is on the neighbouring

@@ -15,23 +15,36 @@ pub struct Watch {
     pub sanitize: bool,
     pub hits: Vec<u64>,
     findings: BTreeMap<(FindingKind, u32), u64>,
+    /// The kinds of findings that were new, for an observer. They are as many as the findings.
+    fresh: Vec<FindingKind>,
 }
 
 impl Watch {
     pub fn new(program: &Program) -> Self {
-        Self { sanitize: false, hits: vec![0; program.points.len()], findings: BTreeMap::new() }
+        let hits = vec![0; program.points.len()];
+        Self { sanitize: false, hits, findings: BTreeMap::new(), fresh: Vec::new() }
     }
 
     pub fn forget(&mut self) {
         self.hits.fill(0);
         self.findings.clear();
+        self.fresh.clear();
+    }
+
+    /// Moves the kinds of findings that are new since the last call.
+    pub fn take_fresh(&mut self, to: &mut Vec<FindingKind>) {
+        to.clear();
+        to.append(&mut self.fresh);
     }
 
     /// Counts a finding at an instruction.
     #[cold]
     pub fn note(&mut self, kind: FindingKind, pc: u32) {
-        if self.findings.len() < MAX_FINDINGS || self.findings.contains_key(&(kind, pc)) {
-            *self.findings.entry((kind, pc)).or_default() += 1;
+        if let Some(count) = self.findings.get_mut(&(kind, pc)) {
+            *count += 1;
+        } else if self.findings.len() < MAX_FINDINGS {
+            self.findings.insert((kind, pc), 1);
+            self.fresh.push(kind);
         }
     }
 
