@@ -62,7 +62,7 @@ pub use needs::Needs;
 pub use passes::prepare_passes;
 pub use pixels::{Linear, Picture, is_own_png};
 pub use plan::{Changes, Pass, Plan};
-pub use prepared::PreparedPass;
+pub use prepared::{PictureFragment, PreparedPass};
 
 use std::sync::Arc;
 

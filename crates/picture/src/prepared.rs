@@ -8,7 +8,7 @@ use glam::{DMat4, DVec3};
 use super::Shot;
 use super::pixels::{Background, Linear};
 use super::values::PassCamera;
-use crate::frame::{Stages, pack_buffer, probe};
+use crate::frame::{ReadyStage, Stages, pack_buffer, probe};
 use lamplight_bundle::Binding;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_execute::Session;
@@ -17,6 +17,7 @@ use lamplight_execute::frame::{
     Buffers, DrawItem, Drawing, EntryPoint, Frame, Mesh, PipelineState,
 };
 use lamplight_execute::kernel::SENTINEL;
+use lamplight_execute::raster::{PixelFragment, fragments_at};
 use lamplight_scenes::linear_from_srgb;
 
 /// A pass with everything that it is drawn with.
@@ -166,6 +167,76 @@ impl PreparedPass {
     fn color(&self, frame: &Frame, pixel: usize) -> Option<[f32; 4]> {
         let color = pixel_color(frame.targets.first()?.get(4 * pixel..4 * pixel + 4)?)?;
         Some(if self.encoded { decoded_color(color) } else { color })
+    }
+}
+
+/// A fragment of a picture with its stage, ready to be run.
+pub struct PictureFragment {
+    /// What it is given, and what it reads.
+    pub fragment: PixelFragment,
+    /// The fragment stage.
+    pub stage: ReadyStage,
+}
+
+impl PreparedPass {
+    /// The fragments that cover the middle of a pixel, the visible one first. Where fragments may be
+    /// discarded, that is known only when they have run.
+    ///
+    /// # Errors
+    /// `picture-invalid` for a pixel outside of the picture, and those of the vertex stage.
+    pub fn fragments_at(
+        &self,
+        pixel: [u32; 2],
+        shot: &Shot,
+    ) -> Result<Vec<PictureFragment>, Diagnostics> {
+        let [width, height] = shot.size;
+        if pixel[0] >= width || pixel[1] >= height {
+            let message = format!(
+                "the pixel {},{} is outside of the picture, which has {width} x {height}",
+                pixel[0], pixel[1]
+            );
+            let help = format!("help: columns are 0 to {}, rows 0 to {}", width - 1, height - 1);
+            return Err(vec![Diagnostic::error(codes::PICTURE_INVALID, message).note(help)]);
+        }
+        let mut found = Vec::new();
+        for slice in std::iter::once(self).chain(&self.farther) {
+            found.extend(slice.own_fragments_at(pixel, shot).map_err(|problem| vec![problem])?);
+        }
+        Ok(found)
+    }
+
+    fn own_fragments_at(
+        &self,
+        pixel: [u32; 2],
+        shot: &Shot,
+    ) -> Result<Vec<PictureFragment>, Diagnostic> {
+        let Some(stage) = &self.stages.fragment else { return Ok(Vec::new()) };
+        let fine = self.fine.max(1);
+        let (size, pixel) =
+            (shot.size.map(|side| side * fine), pixel.map(|at| at * fine + fine / 2));
+        let view = self.eye_view([0.0; 2], size)?;
+        let items: Vec<DrawItem<'_>> =
+            self.items.iter().map(|(mesh, buffers)| DrawItem { mesh, buffers }).collect();
+        let point = |stage: &'_ ReadyStage| stage.validated.clone();
+        let (vertex, fragment) = (point(&self.stages.vertex), point(stage));
+        let drawing = Drawing {
+            vertex: EntryPoint { module: &vertex.module, entry: self.stages.vertex.entry },
+            fragment: Some(EntryPoint { module: &fragment.module, entry: stage.entry }),
+            targets: self.targets(),
+            items: &items,
+            views: std::slice::from_ref(&view),
+            buffers: &self.buffers,
+            plain: &self.plain,
+            fixtures: &self.fixtures,
+            levels: &self.levels,
+            size,
+            state: self.state,
+        };
+        let found = fragments_at(&drawing, &view, pixel)?;
+        Ok(found
+            .into_iter()
+            .map(|fragment| PictureFragment { fragment, stage: stage.clone() })
+            .collect())
     }
 }
 

@@ -134,10 +134,7 @@ impl Sketch {
             return Err(sketch_refused(&format!("`{name}` returns no `vec4f` at location 0")));
         }
         let validated = Arc::new(validated);
-        let functions = Arc::from(Vec::new());
-        Ok(Self {
-            stage: ReadyStage { validated, entry: ENTRY, reflection, text: "".into(), functions },
-        })
+        Ok(Self { stage: ReadyStage::made(validated, ENTRY, reflection, "".into()) })
     }
 
     /// The inputs with the names of their sources.
@@ -321,14 +318,7 @@ pub(crate) fn vertex_stage(text: String) -> Result<ReadyStage, Diagnostics> {
     let composed = compose::compose(&graph, &Settings::default(), &Options::default())?;
     let validated = Arc::new(validate(&composed)?);
     let reflection = reflect(&validated, "vs_main").map_err(|problem| vec![problem])?;
-    let functions = Arc::from(Vec::new());
-    Ok(ReadyStage {
-        validated,
-        entry: "vs_main",
-        reflection,
-        text: composed.text.into(),
-        functions,
-    })
+    Ok(ReadyStage::made(validated, "vs_main", reflection, composed.text.into()))
 }
 
 /// The vertex stage that gives a fragment stage what it asks for.

@@ -10,6 +10,7 @@
 
 mod evaluated;
 mod metal;
+mod pixel;
 mod triangles;
 
 use crate::fixture::{Fixture, FixtureTexture};
@@ -22,6 +23,7 @@ use lamplight_eval::{Filter, MipLevel, Number, Resources};
 use lamplight_validate::inner_blocks;
 pub use metal::CompiledStages;
 use naga::{Binding, Block, BuiltIn, FunctionResult, Module, ShaderStage, Statement, TypeInner};
+pub use pixel::{PixelFragment, fragments_at};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -85,6 +87,26 @@ fn draw_frame(
     shading: &dyn Shading,
     textures: &Resources,
 ) -> Result<Frame, Diagnostic> {
+    let mut drawn = assembled(drawing, view, shading, textures)?;
+    let shader = Shader { drawing, view, shading, textures };
+    let (targets, depth) = match drawing.fragment {
+        Some(stage) if is_decided_by(stage.module) => shader.shade_all(&drawn)?,
+        _ => {
+            drawn.seen.draw(&drawn.triangles, drawing.state);
+            (shader.shade_visible(&drawn)?, drawn.seen.depth)
+        }
+    };
+    let depth = if drawing.state.keep_depth { depth } else { Vec::new() };
+    Ok(Frame { targets, depth, detour: None })
+}
+
+/// Runs the vertex stage and places all triangles. Nothing is visible yet.
+fn assembled(
+    drawing: &Drawing<'_>,
+    view: &Buffers,
+    shading: &dyn Shading,
+    textures: &Resources,
+) -> Result<DrawnView, Diagnostic> {
     let resources = |item: &DrawItem<'_>| Resources {
         buffers: item_buffers(drawing, view, item),
         ..textures.clone()
@@ -106,16 +128,7 @@ fn draw_frame(
         );
         drawn.corners.push(corners);
     }
-    let shader = Shader { drawing, view, shading, textures };
-    let (targets, depth) = match drawing.fragment {
-        Some(stage) if is_decided_by(stage.module) => shader.shade_all(&drawn)?,
-        _ => {
-            drawn.seen.draw(&drawn.triangles, drawing.state);
-            (shader.shade_visible(&drawn)?, drawn.seen.depth)
-        }
-    };
-    let depth = if drawing.state.keep_depth { depth } else { Vec::new() };
-    Ok(Frame { targets, depth, detour: None })
+    Ok(drawn)
 }
 
 /// The uniform buffers of one item in one view.

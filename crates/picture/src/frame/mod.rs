@@ -16,7 +16,7 @@ use crate::needs::NeedsTable;
 use lamplight_bundle::{Binding, Language, Member, Reflection};
 use lamplight_compose as compose;
 use lamplight_compose::resolve::Graph;
-use lamplight_compose::{Options, PartKind, project, resolve};
+use lamplight_compose::{Options, PartKind, SourceMap, project, resolve};
 use lamplight_diagnostic::source::{Embedded, SourceSet};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_emit::reflect;
@@ -80,8 +80,25 @@ pub struct ReadyStage {
     pub reflection: Reflection,
     /// The composed text; for WESL, that of both stages.
     pub text: Arc<str>,
+    /// Leads from the text back to its authors' files. There is none for a stage that is made.
+    pub map: Arc<SourceMap>,
+    /// The module before its loops were bounded.
+    pub written: Arc<Validated>,
     /// Paths of the library's functions that the text has, such as `lighting::spot::cone_hard`.
     pub functions: Arc<[String]>,
+}
+
+impl ReadyStage {
+    /// A stage that no author wrote.
+    pub fn made(
+        validated: Arc<Validated>,
+        entry: &'static str,
+        reflection: Reflection,
+        text: Arc<str>,
+    ) -> Self {
+        let (written, map) = (validated.clone(), Arc::default());
+        Self { validated, entry, reflection, text, map, written, functions: Arc::from(Vec::new()) }
+    }
 }
 
 impl Programs {
@@ -190,7 +207,8 @@ impl Programs {
             compose::compose(&*self.graph(file, language)?, settings, &Options::default())?;
         let validated = Arc::new(validate(&composed)?);
         let functions = library_functions(&composed, &self.kept().texts);
-        Ok(CompiledText { text: composed.text.into(), functions, validated })
+        let map = Arc::new(composed.map);
+        Ok(CompiledText { text: composed.text.into(), map, functions, validated })
     }
 
     fn graph(&self, file: &ManifestFile, language: Language) -> Result<Arc<Graph>, Diagnostics> {
@@ -216,6 +234,7 @@ impl Programs {
 /// A composed text, compiled.
 struct CompiledText {
     text: Arc<str>,
+    map: Arc<SourceMap>,
     functions: Arc<[String]>,
     validated: Arc<Validated>,
 }
@@ -240,6 +259,8 @@ fn ready_text(text: &CompiledText, entry: &'static str) -> Result<ReadyStage, Di
         entry,
         reflection,
         text: text.text.clone(),
+        map: text.map.clone(),
+        written: text.validated.clone(),
         functions: text.functions.clone(),
     })
 }

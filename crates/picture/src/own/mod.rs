@@ -57,7 +57,7 @@ use self::table::{Origin, Row, RowKind};
 use crate::frame::{ReadyStage, Stages};
 use crate::mesh::object_mesh;
 use crate::pixels::Background;
-use crate::prepared::PreparedPass;
+use crate::prepared::{PictureFragment, PreparedPass};
 use crate::sketch::{input_label, white_object};
 use crate::values::PassCamera;
 use crate::{Picture, Shot, Surroundings};
@@ -217,6 +217,19 @@ impl OwnPicture {
     pub fn take(&self, painter: &dyn Session, shot: &Shot) -> Result<Picture, Diagnostics> {
         let picture = self.pass.photograph(painter, shot)?.develop();
         Ok(if self.is_upside_down { picture.upside_down() } else { picture })
+    }
+
+    /// The fragments that cover a pixel of the picture, the visible one first.
+    ///
+    /// # Errors
+    /// Those of [`PreparedPass::fragments_at`].
+    pub fn fragments_at(
+        &self,
+        [x, y]: [u32; 2],
+        shot: &Shot,
+    ) -> Result<Vec<PictureFragment>, Diagnostics> {
+        let row = if self.is_upside_down { shot.size[1].saturating_sub(1 + y) } else { y };
+        self.pass.fragments_at([x, row], shot)
     }
 }
 

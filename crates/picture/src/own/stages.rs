@@ -27,7 +27,7 @@ const TRIPS: u32 = 1 << 18;
 pub struct OwnText {
     validated: Validated,
     text: Arc<str>,
-    map: SourceMap,
+    map: Arc<SourceMap>,
     is_glsl: bool,
     /// The clip space of the author's API.
     pub clip: Clip,
@@ -93,7 +93,7 @@ impl OwnText {
             true => errors.into_iter().map(of_translation).collect(),
             false => errors,
         })?;
-        let (text, map) = (read.text.as_str().into(), read.map.clone());
+        let (text, map) = (read.text.as_str().into(), Arc::new(read.map.clone()));
         Ok((Self { validated, text, map, is_glsl, clip }, warnings))
     }
 
@@ -216,10 +216,18 @@ fn ready_stage(text: &OwnText, name: &str, entry: &'static str) -> Result<OwnSta
         entry.clone_into(&mut point.name);
     }
     let reflection = reflect(&validated, entry).map_err(|problem| vec![problem])?;
+    let written = Arc::new(validated.clone());
     bound_loops(&mut validated.module, TRIPS);
     let validated = Arc::new(validated);
-    let functions = Arc::from(Vec::new());
-    let ready = ReadyStage { validated, entry, reflection, text: text.text.clone(), functions };
+    let ready = ReadyStage {
+        validated,
+        entry,
+        reflection,
+        text: text.text.clone(),
+        map: text.map.clone(),
+        written,
+        functions: Arc::from(Vec::new()),
+    };
     let name = name.to_owned();
     Ok(OwnStage { ready, name, places, is_glsl: text.is_glsl, clip: text.clip })
 }
@@ -317,15 +325,15 @@ fn separate_numbered(vertex: &OwnStage, fragment: &mut OwnStage) {
         let taken = vertex.ready.reflection.bindings.iter();
         let taken = taken.chain(&fragment.ready.reflection.bindings);
         let free = taken.map(|one| one.binding + 1).max().unwrap_or(0);
-        let mut validated = Validated::clone(&fragment.ready.validated);
-        for (_, variable) in validated.module.global_variables.iter_mut() {
-            if let Some(binding) = &mut variable.binding
-                && (binding.group, binding.binding) == place
-            {
-                binding.binding = free;
+        for validated in [&mut fragment.ready.validated, &mut fragment.ready.written] {
+            for (_, variable) in Arc::make_mut(validated).module.global_variables.iter_mut() {
+                if let Some(binding) = &mut variable.binding
+                    && (binding.group, binding.binding) == place
+                {
+                    binding.binding = free;
+                }
             }
         }
-        fragment.ready.validated = Arc::new(validated);
         for binding in &mut fragment.ready.reflection.bindings {
             if (binding.group, binding.binding) == place {
                 binding.binding = free;

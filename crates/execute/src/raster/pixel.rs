@@ -1,0 +1,60 @@
+//! The fragments of one pixel, without running them.
+
+use super::{
+    CoveredQuad, Evaluated, Screen, Shading, assembled, bound_textures, item_buffers, middle,
+    quad_pixels, wire_stages,
+};
+use crate::frame::{Buffers, Drawing};
+use lamplight_diagnostic::Diagnostic;
+use lamplight_eval::Resources;
+
+/// A fragment that covers a pixel, as one of a quad.
+#[derive(Debug, Clone)]
+pub struct PixelFragment {
+    /// The item of the drawing that it belongs to.
+    pub item: usize,
+    /// The scalars that the fragment stage is given for each fragment of the quad.
+    pub arguments: [Vec<f32>; 4],
+    /// Which of the four it is.
+    pub lane: usize,
+    /// What the fragment stage reads.
+    pub resources: Resources,
+}
+
+/// The fragments that cover the middle of a pixel in a view. With the depth test the nearest one is
+/// the first, otherwise the one that is drawn last.
+///
+/// # Errors
+/// Those of the vertex stage.
+pub fn fragments_at(
+    drawing: &Drawing<'_>,
+    view: &Buffers,
+    [x, y]: [u32; 2],
+) -> Result<Vec<PixelFragment>, Diagnostic> {
+    let shading = Evaluated::new(drawing)?;
+    let textures = bound_textures(drawing);
+    let drawn = assembled(drawing, view, &shading, &textures)?;
+    let Some(taken) = shading.taken() else { return Ok(Vec::new()) };
+    let wiring = wire_stages(&shading.given(), &taken);
+    let screen = Screen { drawn: &drawn, size: drawing.size, wiring };
+    let place = (middle(x), middle(y));
+    let covering = drawn.triangles.iter().filter(|one| one.covers(place.0, place.1));
+    let mut found: Vec<_> = covering
+        .map(|one| (one.depth(place.0, place.1, one.offset(drawing.state.offset)), one))
+        .filter(|(depth, _)| !drawing.state.depth_test || *depth < 1.0)
+        .collect();
+    match drawing.state.depth_test {
+        true => found.sort_by(|(one, _), (other, _)| one.total_cmp(other)),
+        false => found.reverse(),
+    }
+    let lane = ((x & 1) + 2 * (y & 1)) as usize;
+    let fragment = |(_, triangle): (f32, _)| {
+        let pixels = quad_pixels(x & !1, y & !1);
+        let quad = CoveredQuad { triangle, pixels, covered: [true; 4] };
+        let item = triangle.item;
+        let buffers = item_buffers(drawing, view, &drawing.items[item]);
+        let resources = Resources { buffers, ..textures.clone() };
+        PixelFragment { item, arguments: screen.quad(&quad).arguments, lane, resources }
+    };
+    Ok(found.into_iter().map(fragment).collect())
+}
