@@ -303,10 +303,24 @@ impl Library {
         language: Language,
         function: &str,
     ) -> Result<Validated, Diagnostics> {
+        self.importing_text(sources, root, language, function).map(|(_, validated)| validated)
+    }
+
+    /// The same, with the composed text.
+    pub fn importing_text(
+        &self,
+        sources: &Mutex<SourceSet>,
+        root: (&str, &str),
+        language: Language,
+        function: &str,
+    ) -> Result<(Composed, Validated), Diagnostics> {
         let files = Memory(BTreeMap::from([(root.0.to_owned(), root.1.to_owned())]));
         let caller = Package { name: "expression".to_owned(), files: Box::new(files) };
         let packages = self.packages_of_caller(caller);
-        self.compose_module(sources, &packages, root.0, language, &[function.to_owned()])
+        let functions = [function.to_owned()];
+        let composed = composed(sources, &packages, root.0, language, &functions, &self.settings)?;
+        let validated = validate::validate(&composed)?;
+        Ok((composed, validated))
     }
 
     fn compose_module(

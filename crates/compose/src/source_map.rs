@@ -72,6 +72,16 @@ impl SourceMap {
         Some((span.start + (end as u32).saturating_sub(segment.start)).min(span.end))
     }
 
+    /// Replaces places. What is at another place afterwards corresponds to it as a whole.
+    pub fn replace(&mut self, change: &dyn Fn(Span) -> Span) {
+        for segment in &mut self.segments {
+            let Some(span) = segment.span else { continue };
+            let changed = change(span);
+            segment.verbatim &= changed == span;
+            segment.span = Some(changed);
+        }
+    }
+
     /// All segments, in order of output.
     pub fn segments(&self) -> &[Segment] {
         &self.segments

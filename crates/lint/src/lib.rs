@@ -8,6 +8,7 @@ mod settings;
 mod stages;
 
 pub use case::alike_entry_points;
+pub use documented::{DocumentedParameter, documented_parameters};
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -16,6 +16,7 @@ use naga::{Expression, Handle, ScalarKind, Statement};
 
 use super::library::{Library, lock_sources};
 use lamplight_bundle::Language;
+use lamplight_compose::Composed;
 use lamplight_diagnostic::source::{SourceId, SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_execute::Session;
@@ -106,6 +107,37 @@ impl CompiledExpression {
             session.run(&self.kernel, &[]).map_err(|error| vec![placed(error, self.span)])?;
         Ok(ExpressionValue { words, kinds: self.kernel.result_kinds() })
     }
+}
+
+/// An expression in WGSL as the text of a function without parameters, which returns its value.
+pub struct ExpressionText {
+    /// The text with everything that the expression needs.
+    pub composed: Composed,
+    /// Its module.
+    pub validated: Validated,
+    /// The name of the function.
+    pub function: &'static str,
+}
+
+/// Composes an expression. Errors point into it, as a source named `<expression>`.
+pub fn compose_expression(
+    library: &Library,
+    sources: &Mutex<SourceSet>,
+    text: &str,
+) -> Result<ExpressionText, Diagnostics> {
+    let id = lock_sources(sources).add("<expression>", text);
+    complete::check_complete(text, id).map_err(|error| vec![error])?;
+    let wesl = rewrite::rewrite_wesl(text, library);
+    let root = ("expression.wesl", wesl.text.as_str());
+    let read = library.importing_text(sources, root, Language::Wesl, FUNCTION);
+    let (mut composed, validated) = read.map_err(|errors| -> Diagnostics {
+        let errors = errors.into_iter();
+        errors.map(|error| relocate_labels(error, &lock_sources(sources), &wesl, id)).collect()
+    })?;
+    let span = Span::new(id, 0..text.len());
+    let is_wrapper = |span: &Span| *lock_sources(sources).get(span.source).text == *wesl.text;
+    composed.map.replace(&|found| if is_wrapper(&found) { span } else { found });
+    Ok(ExpressionText { composed, validated, function: FUNCTION })
 }
 
 /// The error with the place of the whole expression, unless it has one.

@@ -42,16 +42,72 @@ fn may_have_degrees(text: &str) -> bool {
     ANGLES.iter().any(|name| text.contains(&format!("{name}(")))
 }
 
-fn contradictions_of(composed: &Composed) -> Diagnostics {
-    let text = &composed.text;
-    let Some(lookup) = Lookup::read(text) else { return Diagnostics::new() };
-    let heads: Vec<(Head<'_>, String)> = lookup
-        .heads()
-        .into_iter()
+/// The heads of functions that have documentation of their parameters, with it.
+fn documented_heads<'t>(text: &str, lookup: &Lookup<'t>) -> Vec<(Head<'t>, String)> {
+    let heads = lookup.heads().into_iter();
+    heads
         .map(|head| (comment_above(text, head.place), head))
         .filter(|(comment, _)| comment.contains("Parameters:"))
         .map(|(comment, head)| (head, comment))
-        .collect();
+        .collect()
+}
+
+/// What documentation says of a parameter that is a number.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DocumentedParameter {
+    /// The function's name in the text.
+    pub function: String,
+    /// The parameter's name.
+    pub name: String,
+    /// The words, as they stand.
+    pub words: String,
+    /// The least and the largest value.
+    pub range: [f64; 2],
+    /// Whether the least value is outside itself.
+    pub is_open: bool,
+}
+
+impl DocumentedParameter {
+    /// Whether a value is in the range.
+    pub fn has(&self, value: f64) -> bool {
+        let [least, most] = self.range;
+        docs::Range { least, most, is_open: self.is_open }.has(value)
+    }
+}
+
+/// The parameters of a text in WGSL of which documentation gives the range.
+pub fn documented_parameters(text: &str) -> Vec<DocumentedParameter> {
+    if !text.contains("Parameters:") {
+        return Vec::new();
+    }
+    validate::on_large_stack(|| {
+        let Some(lookup) = Lookup::read(text) else { return Vec::new() };
+        let mut found = Vec::new();
+        for (head, comment) in documented_heads(text, &lookup) {
+            for parameter in &head.parameters {
+                let of = documented(&comment, parameter.name);
+                let Some(Documented { words, range, unit, .. }) = of else { continue };
+                // That a number is a cosine is a range too.
+                let cosines = docs::Range { least: -1.0, most: 1.0, is_open: false };
+                let range = range.or((unit == Some(Unit::Cosine)).then_some(cosines));
+                let Some(range) = range else { continue };
+                found.push(DocumentedParameter {
+                    function: head.name.to_owned(),
+                    name: parameter.name.to_owned(),
+                    words,
+                    range: [range.least, range.most],
+                    is_open: range.is_open,
+                });
+            }
+        }
+        found
+    })
+}
+
+fn contradictions_of(composed: &Composed) -> Diagnostics {
+    let text = &composed.text;
+    let Some(lookup) = Lookup::read(text) else { return Diagnostics::new() };
+    let heads = documented_heads(text, &lookup);
     let mut found = Diagnostics::new();
     for (place, name, arguments) in lookup.calls() {
         let call = Call { composed, lookup: &lookup, name, arguments: &arguments };
