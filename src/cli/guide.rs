@@ -93,6 +93,15 @@ const ENTRIES: &[HelpEntry] = &[
         ],
     ),
     guide_entry(
+        "debug",
+        "Why is this pixel black",
+        &[
+            "lamplight debug 'lighting::spot::cone_exponent(0.9, 0.8, 4.0)'",
+            "lamplight debug shaders/lamp.wesl --pixel 256,256",
+            "lamplight debug shaders/lamp.wesl --pixel 256,256 --why color.r",
+        ],
+    ),
+    guide_entry(
         "check",
         CASES,
         &[

@@ -323,6 +323,11 @@ impl InputArguments {
         Ok(if other == Stage::Fragment { vertex } else { fragment })
     }
 
+    /// The package's root directory, if it is given.
+    pub fn root(&self) -> Option<&Path> {
+        self.root.as_deref()
+    }
+
     /// The file of the other stage that is asked for.
     pub fn partner(&self) -> Option<&Path> {
         self.with.as_deref()

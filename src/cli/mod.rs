@@ -12,6 +12,7 @@ mod compile;
 mod completions;
 mod compose;
 mod cost;
+mod debug;
 mod eval;
 mod executor;
 mod explain;
@@ -89,6 +90,7 @@ enum Command {
     Keys(keys::Arguments),
     Bindings(bindings::Arguments),
     Eval(eval::Arguments),
+    Debug(debug::Arguments),
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
     Render(render::Arguments),
@@ -132,7 +134,7 @@ impl Command {
 
 /// The command line with examples and pages in its help.
 fn described_command() -> clap::Command {
-    guide::in_help(Cli::command()).color(color_choice())
+    guide::in_help(debug::without_files(Cli::command())).color(color_choice())
 }
 
 /// What `--color` says, read before the other options: help and wrong usage are printed before
@@ -247,6 +249,7 @@ fn dispatch_command(
         Command::Bundle(arguments) => bundle::run_bundle(arguments),
         Command::Keys(arguments) => keys::run_keys(arguments, form),
         Command::Bindings(arguments) => bindings::run_bindings(&arguments),
+        Command::Debug(arguments) => debug::run_debug(arguments, form),
         Command::Eval(arguments) => eval::run_eval(arguments, form),
         Command::Check(arguments) => check::run_check(arguments),
         Command::Catalogue(arguments) => catalogue::run_catalogue(arguments, gpus),

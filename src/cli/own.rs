@@ -21,6 +21,11 @@ pub struct OwnPackage {
 }
 
 impl OwnPackage {
+    /// That at a root directory, or else the package here.
+    pub fn at(root: Option<PathBuf>) -> Self {
+        Self { root }
+    }
+
     /// Its root folder; `None` for the library's own sources, which are not a second package.
     pub fn root(&self) -> Option<PathBuf> {
         let found = || {

@@ -33,8 +33,9 @@ use crate::picture::beside;
 use crate::picture::frame::Programs;
 use crate::picture::gallery::SAMPLES;
 use crate::picture::strip::{self, Comparison};
-use crate::picture::{self, Picture, Plan, Shot, Surroundings, is_own_png};
+use crate::picture::{self, Picture, PictureFragment, Plan, Shot, Surroundings, is_own_png};
 use crate::scene::{ENVIRONMENTS, Equirect, sets};
+use crate::source::SourceSet;
 
 /// Draw a shader of your own, a preset, a permutation or your own model.
 #[derive(Args, Clone)]
@@ -101,6 +102,73 @@ pub struct Arguments {
     own: own::OwnArguments,
     #[command(flatten, next_help_heading = "How sources are read")]
     input: InputArguments,
+}
+
+/// A picture that is ready to be drawn, of which one fragment is looked at.
+pub struct ReadyFragments {
+    /// The fragments of the pixel, the visible one first.
+    pub fragments: Vec<PictureFragment>,
+    /// The texts that the picture is made of.
+    pub sources: SourceSet,
+}
+
+/// The fragments of a pixel of the picture that `render` draws with the same arguments.
+pub fn fragments_at(
+    arguments: &Arguments,
+    pixel: [u32; 2],
+    form: DiagnosticForm,
+) -> Result<ReadyFragments, Failure> {
+    let entry = executor::find_drawing(arguments.executor.as_deref().unwrap_or("eval"))?;
+    let shot = make_shot(arguments, entry)?;
+    if let Some(file) = own::own_file(arguments) {
+        let (ready, sources) = own::prepare_file(arguments, file, &shot, form)?;
+        let found = ready.prepared.fragments_at(pixel, &ready.shot);
+        return match found {
+            Ok(fragments) => Ok(ReadyFragments { fragments, sources }),
+            Err(errors) => Err(Failure::Input(sources, errors)),
+        };
+    }
+    refuse_own(arguments)?;
+    let programs = Programs::load(LIBRARY_FILES)
+        .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
+    let plan = make_plan(&programs, arguments)?;
+    let painter = executor::open_executor(entry)?;
+    let prepared = picture::prepare_passes(painter.as_ref(), &programs, &plan, &shot);
+    let found = prepared.and_then(|prepared| prepared.fragments_at(pixel, &shot));
+    let fragments = found.map_err(|problems| input_failure(&programs, problems))?;
+    Ok(ReadyFragments { fragments, sources: programs.texts() })
+}
+
+impl Arguments {
+    /// The file, the preset, or what else is named.
+    pub fn subject(&self) -> Option<&str> {
+        self.preset.as_deref()
+    }
+
+    /// The root directory of the user's package, if it is given.
+    pub fn root(&self) -> Option<PathBuf> {
+        self.input.root().map(Path::to_owned)
+    }
+
+    /// An option that was given and is about files of pictures.
+    pub fn option_about_files(&self) -> Option<&'static str> {
+        let given = [
+            (self.all, "--all"),
+            (self.comparisons, "--comparisons"),
+            (self.beside, "--beside"),
+            (self.output.is_some(), "--out"),
+            (self.samples.is_some(), "--samples"),
+            (self.overwrite.replace() == output::Replace::Any, "--force"),
+            (self.own.watch, "--watch"),
+            (self.own.terminal.is_some(), "--terminal"),
+        ];
+        given.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
+    }
+
+    /// Whether what is printed is for a program.
+    pub fn is_json(&self) -> bool {
+        self.own.json
+    }
 }
 
 /// The executor that draws where nothing else is asked for.

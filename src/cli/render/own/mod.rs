@@ -22,7 +22,9 @@ use crate::diagnostic::Diagnostics;
 use crate::execute::Session;
 use crate::generate::add_numbers;
 use crate::picture::own::table::Row;
-use crate::picture::own::{OwnRequest, OwnStages, OwnText, choose_stages, prepare_own};
+use crate::picture::own::{
+    OwnPicture, OwnRequest, OwnSettings, OwnStages, OwnText, choose_stages, prepare_own,
+};
 use crate::picture::{Picture, Shot};
 use crate::source::{LIMITS, SourceSet};
 use watch::Seen;
@@ -58,7 +60,8 @@ pub fn draw_own(
 ) -> Result<(), Failure> {
     check_usage(arguments, file)?;
     let painter = open_painter(arguments)?;
-    let job = Job { arguments, file, shot, form, painter: painter.as_ref() };
+    let reader = Reader { arguments, file, shot, form };
+    let job = Job { reader, painter: painter.as_ref() };
     if arguments.own.watch {
         return watch::draw_again(&job);
     }
@@ -67,13 +70,55 @@ pub fn draw_own(
     report::report_drawn(&job, &drawn, true)
 }
 
-/// What every drawing of the file has in common.
-struct Job<'a> {
+/// The file, ready to be drawn, with the texts that it was made of.
+///
+/// # Errors
+/// Those of the file, of its values and of its model.
+pub fn prepare_file(
+    arguments: &Arguments,
+    file: &Path,
+    shot: &Shot,
+    form: DiagnosticForm,
+) -> Result<(Ready, SourceSet), Failure> {
+    check_usage(arguments, file)?;
+    let reader = Reader { arguments, file, shot, form };
+    let mut seen = Seen::default();
+    let (texts, mut sources) = reader.texts(&mut seen)?;
+    let settings = content::read_settings(file, &mut sources, &mut seen)?;
+    let ready = reader.prepare_texts(&texts, &settings, &sources, &mut seen)?;
+    Ok((ready, sources))
+}
+
+/// A file that is ready to be drawn.
+pub struct Ready {
+    pub prepared: OwnPicture,
+    /// How the picture is taken.
+    pub shot: Shot,
+    /// The model's name.
+    name: Option<String>,
+    colors: Colors,
+}
+
+/// What every reading of the file has in common.
+struct Reader<'a> {
     arguments: &'a Arguments,
     file: &'a Path,
     shot: &'a Shot,
     form: DiagnosticForm,
+}
+
+/// What every drawing of the file has in common.
+struct Job<'a> {
+    reader: Reader<'a>,
     painter: &'a dyn Session,
+}
+
+impl<'a> std::ops::Deref for Job<'a> {
+    type Target = Reader<'a>;
+
+    fn deref(&self) -> &Reader<'a> {
+        &self.reader
+    }
 }
 
 fn check_usage(arguments: &Arguments, file: &Path) -> Result<(), Failure> {
@@ -132,32 +177,14 @@ impl Job<'_> {
     fn draw_texts(
         &self,
         texts: &[OwnText],
-        settings: &crate::picture::own::OwnSettings,
+        settings: &OwnSettings,
         sources: &SourceSet,
         seen: &mut Seen,
         start: Instant,
     ) -> Result<Drawn, Failure> {
         let failed = |errors: Diagnostics| Failure::Input(sources.clone(), errors);
-        let own = &self.arguments.own;
-        let stages = choose_stages(texts, &own.entry).map_err(failed)?;
-        let colors = own.colors.unwrap_or(self.usual_colors(&stages));
-        let linear = colors == Colors::Linear;
-        let model = content::read_scene(self.arguments, settings, self.file, self.shot, seen)?;
-        let textures = content::read_textures(self.arguments, settings, self.file, linear, seen)?;
-        let (scene, name) = match model {
-            Some((scene, name)) => (Some(scene), Some(name)),
-            None => (None, None),
-        };
-        let time = own.time.or(settings.time).unwrap_or(1.0);
-        let given = content::given_values(self.arguments, settings);
-        let vertices = own.vertices;
-        let request = OwnRequest { scene, given, textures, time, linear, vertices };
-        let prepared = prepare_own(&stages, &request, self.shot).map_err(failed)?;
-        let shot = match prepared.is_flat && self.arguments.samples.is_none() {
-            // There are no edges that several samples would smooth.
-            true => Shot { samples: 1, ..self.shot.clone() },
-            false => self.shot.clone(),
-        };
+        let Ready { prepared, shot, name, colors } =
+            self.prepare_texts(texts, settings, sources, seen)?;
         let picture = prepared.take(self.painter, &shot).map_err(failed)?;
         let model = match (prepared.is_flat, name) {
             (true, _) => "over the whole picture".to_owned(),
@@ -168,6 +195,36 @@ impl Job<'_> {
         notes.extend(self.unused_partner().filter(|_| texts.len() == 1));
         let seconds = start.elapsed().as_secs_f64();
         Ok(Drawn { picture, rows, notes, model, colors, seconds })
+    }
+}
+
+impl Reader<'_> {
+    fn prepare_texts(
+        &self,
+        texts: &[OwnText],
+        settings: &OwnSettings,
+        sources: &SourceSet,
+        seen: &mut Seen,
+    ) -> Result<Ready, Failure> {
+        let failed = |errors: Diagnostics| Failure::Input(sources.clone(), errors);
+        let own = &self.arguments.own;
+        let stages = choose_stages(texts, &own.entry).map_err(failed)?;
+        let colors = own.colors.unwrap_or(self.usual_colors(&stages));
+        let linear = colors == Colors::Linear;
+        let model = content::read_scene(self.arguments, settings, self.file, self.shot, seen)?;
+        let textures = content::read_textures(self.arguments, settings, self.file, linear, seen)?;
+        let (scene, name) = model.unzip();
+        let time = own.time.or(settings.time).unwrap_or(1.0);
+        let given = content::given_values(self.arguments, settings);
+        let vertices = own.vertices;
+        let request = OwnRequest { scene, given, textures, time, linear, vertices };
+        let prepared = prepare_own(&stages, &request, self.shot).map_err(failed)?;
+        let shot = match prepared.is_flat && self.arguments.samples.is_none() {
+            // There are no edges that several samples would smooth.
+            true => Shot { samples: 1, ..self.shot.clone() },
+            false => self.shot.clone(),
+        };
+        Ok(Ready { prepared, shot, name, colors })
     }
 
     /// Shaders for OpenGL and for Shadertoy write what the display shows.

@@ -1,0 +1,30 @@
+//! Why is this pixel black: a fragment, or a call of a function, run line by line of the author's
+//! file.
+//!
+//! `module + arguments -> subject -> events -> table | JSON`
+//!
+//! A [`Subject`] can be run again and again, each time with the same result. So nothing of a run is
+//! kept: [`record`] shows each statement with what it gave a name, in f32, in f64 and with the bound
+//! of the error that WGSL allows, and forgets it. The f32 decides what runs.
+//!
+//! A statement is what ends with `;` or begins a block in the author's text, in WESL as in GLSL. Each
+//! instruction of the evaluator belongs to the statement that its place leads back to.
+
+mod graph;
+mod json;
+mod mark;
+mod record;
+mod subject;
+mod table;
+mod text;
+mod value;
+mod walk;
+mod why;
+
+pub use json::{event_json, statement_place};
+pub use record::{Change, Event, Mark, Options, Outcome, Step, record};
+pub use subject::{Call, Ended, FunctionName, Subject, SubjectText, diagnosed};
+pub use table::{Table, outcome_text, statement_text, turn_text};
+pub use text::{Statement, StatementId, Statements};
+pub use value::{Scalar, Value, digits_text, number_json};
+pub use why::{Cause, Why, WhyError, why};

@@ -1,0 +1,173 @@
+//! Statements of the authors' texts, and which of them each instruction belongs to.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use lamplight_compose::SourceMap;
+use lamplight_diagnostic::source::{SourceId, SourceSet, Span};
+use lamplight_eval::Program;
+
+/// Index of a statement in [`Statements`].
+pub type StatementId = u32;
+
+/// A statement of an author's text, or the head of one that has a block.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Statement {
+    /// Where it is.
+    pub span: Span,
+    /// The line on which it begins, from 1.
+    pub line: u32,
+}
+
+/// The statements that a program runs.
+#[derive(Debug, Clone, Default)]
+pub struct Statements {
+    all: Vec<Statement>,
+    /// That of each instruction.
+    of_code: Vec<Option<StatementId>>,
+    /// That of each variable's declaration.
+    of_variables: Vec<Option<StatementId>>,
+}
+
+impl Statements {
+    /// Finds the statements of a program, in the text that `map` leads back from.
+    pub fn new(program: &Program, map: &SourceMap, sources: &SourceSet) -> Self {
+        let mut finder =
+            Finder { map, sources, cuts: BTreeMap::new(), known: BTreeMap::new(), all: Vec::new() };
+        let of_code = program.spans().iter().map(|span| finder.find(*span)).collect();
+        let variables = program.variables().iter();
+        let of_variables = variables.map(|variable| finder.find(variable.span)).collect();
+        Self { all: finder.all, of_code, of_variables }
+    }
+
+    /// The statement that declares a variable, by its number.
+    pub fn of_variable(&self, index: usize) -> Option<StatementId> {
+        self.of_variables.get(index).copied().flatten()
+    }
+
+    /// The statement of an instruction; `None` for what nobody wrote.
+    pub fn at(&self, pc: u32) -> Option<StatementId> {
+        self.of_code.get(pc as usize).copied().flatten()
+    }
+
+    /// A statement by its index.
+    pub fn get(&self, id: StatementId) -> Option<&Statement> {
+        self.all.get(id as usize)
+    }
+
+    /// All statements, in the order of the program's instructions.
+    pub fn all(&self) -> &[Statement] {
+        &self.all
+    }
+}
+
+/// Finds statements by places in the text that naga parsed.
+struct Finder<'a> {
+    map: &'a SourceMap,
+    sources: &'a SourceSet,
+    /// Where statements end in each text.
+    cuts: BTreeMap<SourceId, Vec<usize>>,
+    /// Statements by where they begin.
+    known: BTreeMap<(SourceId, usize), StatementId>,
+    all: Vec<Statement>,
+}
+
+impl Finder<'_> {
+    fn find(&mut self, span: naga::Span) -> Option<StatementId> {
+        let place = self.map.lookup(span.to_range()?)?;
+        let text = &*self.sources.get(place.source).text;
+        let cuts = self.cuts.entry(place.source).or_insert_with(|| cuts_of(text));
+        let range = statement_around(text, cuts, place.start as usize);
+        let all = &mut self.all;
+        let id = self.known.entry((place.source, range.start)).or_insert_with(|| {
+            let before = text.as_bytes()[..range.start].iter();
+            let line = before.filter(|byte| **byte == b'\n').count() as u32 + 1;
+            all.push(Statement { span: Span::new(place.source, range), line });
+            all.len() as StatementId - 1
+        });
+        Some(*id)
+    }
+}
+
+/// The bytes after which a statement, or the head of one, ends: `;`, `{` and `}` outside of comments.
+fn cuts_of(text: &str) -> Vec<usize> {
+    let bytes = text.as_bytes();
+    let (mut cuts, mut at) = (vec![0], 0);
+    while let Some(byte) = bytes.get(at) {
+        match (byte, bytes.get(at + 1)) {
+            (b'/', Some(b'/')) => {
+                at += text[at..].find('\n').unwrap_or(text.len() - at);
+            }
+            (b'/', Some(b'*')) => at += comment_length(&bytes[at..]),
+            (b';' | b'{' | b'}', _) => {
+                at += 1;
+                cuts.push(at);
+            }
+            _ => at += 1,
+        }
+    }
+    cuts.push(text.len());
+    cuts
+}
+
+/// The bytes of a block comment, with those that are nested in it.
+fn comment_length(bytes: &[u8]) -> usize {
+    let (mut depth, mut at) = (0, 0);
+    while at + 1 < bytes.len() {
+        match &bytes[at..at + 2] {
+            b"/*" => (depth, at) = (depth + 1, at + 2),
+            b"*/" => (depth, at) = (depth - 1, at + 2),
+            _ => at += 1,
+        }
+        if depth == 0 {
+            return at;
+        }
+    }
+    bytes.len()
+}
+
+/// The statement that holds a byte, without comments and blanks before it.
+fn statement_around(text: &str, cuts: &[usize], byte: usize) -> Range<usize> {
+    let after = cuts.partition_point(|cut| *cut <= byte).min(cuts.len() - 1);
+    let (first, end) = (cuts[after.saturating_sub(1)], cuts[after]);
+    let mut start = first;
+    loop {
+        let rest = &text[start..end.max(start)];
+        let trimmed = rest.trim_start();
+        start += rest.len() - trimmed.len();
+        let skipped = match trimmed {
+            _ if trimmed.starts_with("//") || trimmed.starts_with('#') => {
+                trimmed.find('\n').unwrap_or(trimmed.len())
+            }
+            _ if trimmed.starts_with("/*") => comment_length(trimmed.as_bytes()),
+            _ => break,
+        };
+        start += skipped.max(1);
+    }
+    let start = start.min(end);
+    let is_end = |c: char| c.is_whitespace() || matches!(c, ';' | '{' | '}');
+    let mut kept = text[start..end].trim_end_matches(is_end);
+    // The last part of the head of a `for` ends with the bracket that the first part opens.
+    if kept.matches(')').count() > kept.matches('(').count() {
+        kept = kept.strip_suffix(')').unwrap_or(kept);
+    }
+    start..start + kept.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn statements_of_a_text() {
+        let text = "// a;\nfn f() {\n  let x = 1.0; /* ; /* } */ */ let y = 2.0;\n  for (var i = 0; i < 4; i++) {}\n}";
+        let cuts = cuts_of(text);
+        let found = |word: &str| &text[statement_around(text, &cuts, text.find(word).unwrap())];
+        assert_eq!(found("x ="), "let x = 1.0");
+        assert_eq!(found("y ="), "let y = 2.0");
+        assert_eq!(found("i = 0"), "for (var i = 0");
+        assert_eq!(found("i < 4"), "i < 4");
+        assert_eq!(found("i++"), "i++");
+        assert_eq!(found("f()"), "fn f()");
+    }
+}

@@ -1,0 +1,264 @@
+//! Runs of small texts, with values and marks computed by hand.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use lamplight_bundle::Language;
+use lamplight_compose::resolve::{self, Packages};
+use lamplight_compose::{self as compose, Composed, Keep};
+use lamplight_debug::{
+    Call, Event, Mark, Options, Outcome, Step, Subject, SubjectText, Table, Why, WhyError, record,
+    why,
+};
+use lamplight_diagnostic::source::SourceSet;
+use lamplight_eval::{FindingKind, Resources};
+use lamplight_permute::Settings;
+use lamplight_validate::{glsl_as_wgsl, validate};
+
+/// A text with the subject that calls its function `f`.
+struct Given {
+    sources: SourceSet,
+    subject: Subject,
+}
+
+fn composed(name: &str, text: &str, language: Language) -> (Composed, SourceSet) {
+    let mut sources = SourceSet::default();
+    let packages = Packages::of_text(name, text.to_owned());
+    let graph = resolve::load(&mut sources, &packages, name, language).unwrap();
+    let options = compose::Options { keep: Keep::All, ..compose::Options::default() };
+    (compose::compose(&graph, &Settings::default(), &options).unwrap(), sources)
+}
+
+fn given_of(composed: &Composed, sources: SourceSet, arguments: &[f32]) -> Given {
+    let validated = validate(composed).unwrap();
+    let text = SubjectText {
+        module: &validated.module,
+        text: &composed.text,
+        map: &composed.map,
+        sources: &sources,
+    };
+    let call = Call::Alone(arguments.to_vec());
+    let subject = Subject::new(text, "f", call, Resources::default()).unwrap();
+    Given { sources, subject }
+}
+
+fn given(text: &str, arguments: &[f32]) -> Given {
+    let (composed, sources) = composed("own.wesl", text, Language::Wesl);
+    given_of(&composed, sources, arguments)
+}
+
+impl Given {
+    fn events(&self, options: Options) -> Vec<Event> {
+        let mut events = Vec::new();
+        record(&self.subject, options, &mut |event| events.push(event)).unwrap();
+        events
+    }
+
+    fn steps(&self) -> Vec<Step> {
+        let events = self.events(Options { turns: u64::MAX, ..Options::default() });
+        events
+            .into_iter()
+            .filter_map(|event| if let Event::Step(step) = event { Some(step) } else { None })
+            .collect()
+    }
+
+    /// The line of a step, what it changed, and its turns.
+    fn lines(&self) -> Vec<(u32, String, Vec<u64>)> {
+        let line = |step: &Step| self.subject.statements.get(step.statement.unwrap()).unwrap().line;
+        let text = |step: &Step| {
+            let changes = step.changes.iter();
+            changes.map(|one| format!("{} = {}", one.name, one.value.text())).collect::<Vec<_>>()
+        };
+        self.steps()
+            .iter()
+            .map(|one| (line(one), text(one).join(", "), one.turns.clone()))
+            .collect()
+    }
+
+    /// The marks with their lines.
+    fn marks(&self) -> Vec<(u32, Mark)> {
+        let mut found = Vec::new();
+        for step in self.steps() {
+            let line = self.subject.statements.get(step.statement.unwrap()).unwrap().line;
+            found.extend(step.marks.into_iter().map(|mark| (line, mark)));
+        }
+        found
+    }
+
+    fn table(&self) -> String {
+        let options = Options::default();
+        let mut table = Table::new(&self.subject, &self.sources, options);
+        let mut text = String::new();
+        record(&self.subject, options, &mut |event| text += &table.rows(&event)).unwrap();
+        text + &table.summary()
+    }
+}
+
+#[test]
+fn statements_in_order_of_evaluation() {
+    let text = "fn g(a: f32) -> f32 {\n    return a * 2.0;\n}\n\
+                fn f(x: f32) -> f32 {\n    var y = x;\n    for (var i = 0; i < 2; i++) {\n        \
+                y += g(y); // 3, 9\n    }\n    if y > 5.0 { return y; }\n    return 0.0;\n}\n";
+    let lines = given(text, &[1.0]).lines();
+    let shown: Vec<String> =
+        lines.iter().map(|(line, text, turns)| format!("{line}: {text} {turns:?}")).collect();
+    let expected = [
+        "5: y = 1 []",
+        "6:  [1]",
+        "2: return = 2 [1]",
+        "7: y = 3 [1]",
+        "6: i = 1 [1]",
+        "6:  [2]",
+        "2: return = 6 [2]",
+        "7: y = 9 [2]",
+        "6: i = 2 [2]",
+        "6:  []",
+        "9:  []",
+        "9: return = 9 []",
+    ];
+    assert_eq!(shown, expected, "{shown:#?}");
+}
+
+#[test]
+fn conditions_and_ends_of_loops() {
+    let text = "fn f(x: f32) -> f32 {\n    var y = x;\n    loop {\n        y = y * 2.0;\n        \
+                if y > 10.0 { break; }\n    }\n    return y;\n}\n";
+    let given = given(text, &[1.0]);
+    let conditions: Vec<bool> = given
+        .steps()
+        .iter()
+        .flat_map(|step| step.outcomes.clone())
+        .filter_map(|one| if let Outcome::Condition(holds) = one { Some(holds) } else { None })
+        .collect();
+    assert_eq!(conditions, [false, false, false, true]);
+    let left: Vec<u64> = given
+        .events(Options::default())
+        .iter()
+        .filter_map(|event| if let Event::Left { made, .. } = event { Some(*made) } else { None })
+        .collect();
+    assert_eq!(left, [4]);
+}
+
+#[test]
+fn marks_where_they_happen_first() {
+    let text = "fn f(x: f32, i: u32) -> f32 {\n    let power = pow(x, 2.5);\n    \
+                let again = power + 1.0;\n    var a = array<f32, 2>(1.0, 2.0);\n    \
+                let clamped = a[i];\n    let divided = again / (clamped - 2.0);\n    \
+                return divided;\n}\n";
+    let found = given(text, &[-1.0, f32::from_bits(7)]).marks();
+    let kinds: Vec<(u32, &str)> = found.iter().map(|(line, mark)| (*line, mark.name())).collect();
+    assert_eq!(kinds, [(2, "domain"), (5, "clamped-index"), (6, "division-by-zero")]);
+    let Mark::Found(FindingKind::Domain, Some(domain)) = found[0].1 else { panic!("{found:?}") };
+    assert!(domain.contains("negative base"));
+}
+
+#[test]
+fn digits_that_are_lost() {
+    // 1e6 + 1/3 keeps 1/16 of a unit, which is a fifth of what is left.
+    let text = "fn f(x: f32) -> f32 {\n    let large = 1e6 + x / 3.0;\n    \
+                let left = large - 1e6;\n    let more = left * 2.0;\n    return more;\n}\n";
+    let found = given(text, &[1.0]).marks();
+    let [(3, Mark::LostDigits(share))] = found.as_slice() else { panic!("{found:?}") };
+    assert!((0.1..0.5).contains(share), "{share}");
+}
+
+#[test]
+fn arguments_outside_of_their_range() {
+    let text = "/// A cone.\n///\n/// Parameters: `c` cosine of the angle, [-1, 1].\n\
+                fn cone(c: f32) -> f32 {\n    return max(c, 0.0);\n}\n\
+                fn f(x: f32) -> f32 {\n    return cone(x);\n}\n";
+    let marks = |x: f32| -> Vec<Mark> {
+        let events = given(text, &[x]).events(Options::default());
+        let of = |event| match event {
+            Event::Call { marks, .. } => marks,
+            _ => Vec::new(),
+        };
+        events.into_iter().flat_map(of).collect()
+    };
+    assert!(marks(0.5).is_empty());
+    let found = marks(30.0);
+    let [Mark::OutOfRange(name, words, value)] = found.as_slice() else { panic!("{found:?}") };
+    assert_eq!((name.as_str(), *value), ("c", 30.0));
+    assert!(words.contains("[-1, 1]"));
+}
+
+#[test]
+fn endless_loops_end_with_their_line() {
+    let text = "fn f(x: f32) -> f32 {\n    var y = x;\n    loop {\n        y += 1.0;\n        \
+                if y < 0.0 { break; }\n    }\n    return y;\n}\n";
+    let given = given(text, &[1.0]);
+    let mut events = 0_u64;
+    let error = record(&given.subject, Options::default(), &mut |_| events += 1).unwrap_err();
+    assert_eq!(error.code.name, "eval-loop-limit");
+    let range = error.span.to_range().unwrap();
+    assert!(text[range].starts_with("loop"));
+    assert!(events > 1_000_000);
+}
+
+#[test]
+fn shares_of_a_value() {
+    // With a = 2, b = 3 and c = 4: the value is 2 * 3 * 3 + 4 = 22.
+    let text = "fn f(a: f32, b: f32, c: f32, n: i32) -> f32 {\n    let square = b * b;\n    \
+                var sum = c;\n    if n > 1 {\n        sum += a * square;\n    }\n    return sum;\n}\n";
+    let given = given(text, &[2.0, 3.0, 4.0, f32::from_bits(5)]);
+    let Why { value, causes, is_cut } = why(&given.subject, "color").unwrap();
+    assert_eq!((value, is_cut), (22.0, false));
+    let share = |name: &str| {
+        let cause = causes.iter().find(|cause| cause.name == name).unwrap();
+        (cause.share, cause.slope)
+    };
+    assert_eq!(share("a"), (Some(18.0 / 22.0), Some(9.0)));
+    assert_eq!(share("b"), (Some(36.0 / 22.0), Some(12.0)));
+    assert_eq!(share("c"), (Some(4.0 / 22.0), Some(1.0)));
+    assert_eq!(share("square"), (Some(18.0 / 22.0), Some(2.0)));
+    assert_eq!(share("n"), (None, None));
+    let decides =
+        causes.iter().find(|cause| cause.instead.iter().any(|one| one.contains("decides")));
+    assert_eq!(given.subject.statements.get(decides.unwrap().statement.unwrap()).unwrap().line, 4);
+    let WhyError::Unknown(names) = why(&given.subject, "some").unwrap_err() else { panic!() };
+    assert!(names.contains(&"sum".to_owned()));
+}
+
+#[test]
+fn a_loop_counts_in_all_turns() {
+    // 1 + 1/2 + 1/3 of x, each times w: w counts in all turns, sum with its last value.
+    let text = "fn f(x: f32) -> f32 {\n    var sum = 0.0;\n    for (var i = 1; i < 4; i++) {\n        \
+                let w = x / f32(i);\n        sum += w;\n    }\n    return sum;\n}\n";
+    let found = why(&given(text, &[6.0]).subject, "color").unwrap();
+    assert_eq!(found.value, 11.0);
+    let share =
+        |name: &str| found.causes.iter().find(|one| one.name == name).unwrap().share.unwrap();
+    assert!((share("w") - 1.0).abs() < 1e-6, "{}", share("w"));
+    assert!((share("sum") - 1.0).abs() < 1e-6, "{}", share("sum"));
+}
+
+/// A text in GLSL is shown in the lines of its author.
+#[test]
+fn lines_of_glsl() {
+    let text = "#version 450\nfloat g(float a) {\n    float d = a * 2.0; // twice\n    return d;\n}\n\
+                float f(float x) {\n    float y = g(x);\n    y += 1.0;\n    return y;\n}\n\
+                void main() {}\n";
+    let (composed, sources) = composed("own.frag", text, Language::Glsl);
+    let given = given_of(&glsl_as_wgsl(&composed, Default::default()).unwrap(), sources, &[3.0]);
+    let shown: Vec<String> =
+        given.lines().iter().map(|(line, text, _)| format!("{line}: {text}")).collect();
+    assert_eq!(shown, ["3: d = 6", "4: return = 6", "7: y = 6", "8: y = 7", "9: return = 7"]);
+}
+
+#[test]
+fn a_table() {
+    let text = "fn f(x: f32) -> f32 {\n    let root = sqrt(x);\n    return root * 3.0;\n}\n";
+    let expected = "\x20      > f
+         x          -4
+own.wesl
+    2  let root = sqrt(x)
+         root       NaN                              f64 NaN                                +- inf
+     ! outside the domain: the root of a negative number; WGSL leaves the result open
+    3  return root * 3.0  -> returns
+         return     NaN                              f64 NaN                                +- inf
+
+Marked:
+  own.wesl:2: `let root = sqrt(x)`
+      outside the domain: the root of a negative number; WGSL leaves the result open
+";
+    assert_eq!(given(text, &[-4.0]).table(), expected);
+}
