@@ -23,6 +23,7 @@ mod command_line;
 mod compute;
 mod conventions;
 mod cost;
+mod debug;
 mod described;
 mod determinism;
 mod drivers;
@@ -88,6 +89,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     compute::tests,
     conventions::tests,
     cost::tests,
+    debug::tests,
     described::tests,
     determinism::tests,
     command_line::tests,
