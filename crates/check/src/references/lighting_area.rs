@@ -37,7 +37,7 @@ fn edge(a: DVec3, b: DVec3) -> DVec3 {
 /// x.
 fn any_tangent(n: DVec3) -> DVec3 {
     let axis = if n.x.abs() > f64::from(0.6f32) { DVec3::Y } else { DVec3::X };
-    n.cross(axis).try_normalize().unwrap_or(DVec3::X)
+    n.cross(axis).normalize_or_zero()
 }
 
 /// The integral over a quadrilateral.

@@ -7,6 +7,8 @@ pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "math::safe",
     functions: &[
         ("safe_normalize", safe_normalize),
+        ("normalize_or_zero", |a| a.vec3().normalize_or_zero().into()),
+        ("cosine_power", |a| safe_pow(a.f64(), a.f64()).into()),
         ("safe_pow", |a| safe_pow(a.f64(), a.f64()).into()),
         ("saturate_color", |a| a.vec3().clamp(DVec3::ZERO, DVec3::ONE).into()),
     ],
