@@ -73,6 +73,7 @@
 #define contact_hit(p0, p1, p2, p3) lamplight_contact_hit(p0, p1, p2, p3)
 #define cookie_uv(p0, p1) lamplight_cookie_uv(p0, p1)
 #define cornette_shanks(p0, p1) lamplight_cornette_shanks(p0, p1)
+#define cosine_power(p0, p1) lamplight_cosine_power(p0, p1)
 #define cube_bias(p0, p1, p2) lamplight_cube_bias(p0, p1, p2)
 #define cube_compare(p0, p1, p2) lamplight_cube_compare(p0, p1, p2)
 #define cube_depth(p0, p1, p2) lamplight_cube_depth(p0, p1, p2)
@@ -203,6 +204,7 @@
 #define nits_from_pq(p0) lamplight_nits_from_pq(p0)
 #define normal_matrix(p0) lamplight_normal_matrix(p0)
 #define normal_offset(p0, p1, p2, p3, p4) lamplight_normal_offset(p0, p1, p2, p3, p4)
+#define normalize_or_zero(p0) lamplight_normalize_or_zero(p0)
 #define octahedral_decode(p0) lamplight_octahedral_decode(p0)
 #define octahedral_encode(p0) lamplight_octahedral_encode(p0)
 #define oren_nayar(p0, p1, p2, p3) lamplight_oren_nayar(p0, p1, p2, p3)
@@ -380,6 +382,7 @@
 #undef contact_hit
 #undef cookie_uv
 #undef cornette_shanks
+#undef cosine_power
 #undef cube_bias
 #undef cube_compare
 #undef cube_depth
@@ -510,6 +513,7 @@
 #undef nits_from_pq
 #undef normal_matrix
 #undef normal_offset
+#undef normalize_or_zero
 #undef octahedral_decode
 #undef octahedral_encode
 #undef oren_nayar

@@ -47,24 +47,16 @@ vec3 split_sum(vec3 f0, vec2 dfg, vec3 prefiltered) {
 
 /// The parallax-corrected direction for the lookup in a local environment map, whose surroundings are a box.
 ///
-/// Parameters: `r` mirror direction, world space, any length; `p` the reflecting point, world space, scene units; `lo`, `hi` lowest and highest corner of the box, world space, scene units; `c` position from which the map was captured, anywhere, world space, scene units.
+/// Parameters: `r` mirror direction, world space, of a length from 1e-6 to 1e6; `p` the reflecting point, world space, scene units; `lo`, `hi` lowest and highest corner of the box, world space, scene units; `c` position from which the map was captured, anywhere, world space, scene units.
 /// Returns: from `c` to where the ray from `p` leaves the box, world space, scene units.
 /// Source: Lagarde, Zanuttini, "Local Image-Based Lighting with Parallax-Corrected Cubemaps", 2012.
-/// Edges: a wall of `lo` or `hi` that is behind `p`, seen along the ray, counts as at `p`, where the ray ends; `p - c` for an `r` whose components are all below 1e-30, such as zero.
+/// Edges: a wall of `lo` or `hi` that is behind `p`, seen along the ray, counts as at `p`, where the ray ends; a component of `r` below 1e-20 counts as 0; `p - c` for a zero `r`.
 /// Error model: absolute 2^-20*(|hi| + |lo| + |p| + |c|) over the largest component of the unit direction.
 vec3 box_project(vec3 r, vec3 p, vec3 lo, vec3 hi, vec3 c) {
-    float largest = max(max(abs(r.x), abs(r.y)), abs(r.z));
-    if (!(largest > 1e-30)) {
-        return p - c;
-    }
-    vec3 d = r / largest;
-    float x = (d.x > 0.0 ? hi.x - p.x : lo.x - p.x) / (d.x > 0.0 ? 1.0 : -1.0);
-    float y = (d.y > 0.0 ? hi.y - p.y : lo.y - p.y) / (d.y > 0.0 ? 1.0 : -1.0);
-    float z = (d.z > 0.0 ? hi.z - p.z : lo.z - p.z) / (d.z > 0.0 ? 1.0 : -1.0);
+    vec3 wall = (mix(lo, hi, greaterThan(r, vec3(0.0))) - p) / r;
     // The wall that is reached first; one along the ray never is.
-    vec3 reached = max(vec3(x, y, z), vec3(0.0)) / max(abs(d), vec3(1e-6));
-    vec3 away = mix(reached, vec3(1e30), lessThan(abs(d), vec3(1e-6)));
-    return p + d * min(min(away.x, away.y), away.z) - c;
+    vec3 away = mix(vec3(1e20), wall, greaterThan(abs(r), vec3(1e-20)));
+    return p + r * max(min(min(away.x, away.y), away.z), 0.0) - c;
 }
 
 /// The mip level of a prefiltered environment for a roughness.

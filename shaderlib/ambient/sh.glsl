@@ -88,8 +88,8 @@ float geomerics_channel(vec3 n, float constant, vec3 axis) {
     }
     float base = (1.0 - ratio) / (1.0 + ratio);
     float power = 1.0 + 2.0 * ratio;
-    float q = 0.5 + 0.5 * dot(n, safe_normalize(axis, vec3(0.0)));
-    return mean * (base + (1.0 - base) * (power + 1.0) * safe_pow(q, power));
+    float q = 0.5 + 0.5 * dot(n, normalize_or_zero(axis));
+    return mean * (base + (1.0 - base) * (power + 1.0) * cosine_power(q, power));
 }
 
 /// Irradiance from four coefficients that is never negative: a nonlinear lobe in place of the linear band.
@@ -116,7 +116,7 @@ vec3 sh4_irradiance_geomerics(vec3 n, vec3 sh[4]) {
 vec3 sh4_irradiance_zh3(vec3 n, vec3 sh[4]) {
     vec3 luma = vec3(0.2126, 0.7152, 0.0722);
     vec3 linear = vec3(dot(sh[3], luma), dot(sh[1], luma), dot(sh[2], luma));
-    vec3 axis = safe_normalize(linear, vec3(0.0));
+    vec3 axis = normalize_or_zero(linear);
     vec3 along = abs(sh[3] * axis.x + sh[1] * axis.y + sh[2] * axis.z);
     vec3 constant = max(sh[0], vec3(0.0));
     // L00*(0.08*r + 0.6*r^2), with r no more than light from one direction has.

@@ -18,16 +18,14 @@
 /// Parameters: `th`, `bh`, `nh` cosines t.h, b.h and n.h, [-1, 1], the last at least 0; `at`, `ab` alpha along the tangent and the bitangent, [0, 1].
 /// Returns: `1/(pi*at*ab*s^2)` with `s = (th/at)^2 + (bh/ab)^2 + nh^2`, 1/sr, at least 0; `d_ggx` where both alphas are the same.
 /// Source: Burley, "Physically-Based Shading at Disney", 2012, appendix B.2, equation 13.
-/// Edges: 0 where `at` or `ab` is below 1e-9, the mirror direction included; `s` is 1 or more for unit vectors, and counts as 1 where it is less; `th`, `bh` and `nh` count as their magnitudes.
+/// Edges: 0 where `at` or `ab` is 0 or below, the mirror direction included; a product of both below 1e-16 makes the value smaller; `s` is 1 or more for unit vectors, and counts as 1 where it is less; `th`, `bh` and `nh` count as their magnitudes.
 /// Error model: 20 ULP.
 float d_ggx_aniso(float th, float bh, float nh, float at, float ab) {
-    if (!(min(at, ab) >= 1e-9)) {
-        return 0.0;
-    }
-    float t = th / at;
-    float b = bh / ab;
-    float s = max(t * t + b * b + nh * nh, 1.0);
-    return 0.31830989 / (at * ab * s * s);
+    // Everything times (at*ab)^2: one division is enough.
+    float a2 = max(at, 0.0) * max(ab, 0.0);
+    vec3 w = vec3(ab * th, at * bh, a2 * nh);
+    float narrow = a2 / max(dot(w, w), a2 * a2 + SMALLEST_NORMAL);
+    return 0.31830989 * a2 * narrow * narrow;
 }
 
 /// The height-correlated Smith visibility of GGX with two roughnesses, divided by 4*nl*nv.
@@ -40,12 +38,10 @@ float d_ggx_aniso(float th, float bh, float nh, float at, float ab) {
 /// Edges: 0 where `nv` or `nl` is 0 or below: the light or the viewer is at or behind the horizon; `tv`, `bv`, `tl`, `bl`, `at` and `ab` count as their magnitudes, and are not clamped; a denominator below 2^-126 counts as that.
 /// Error model: 14 ULP.
 float v_smith_ggx_aniso(float tv, float bv, float nv, float tl, float bl, float nl, float at, float ab) {
-    if (!(nv > 0.0 && nl > 0.0)) {
-        return 0.0;
-    }
-    float from_view = nl * length(vec3(at * tv, ab * bv, nv));
-    float from_light = nv * length(vec3(at * tl, ab * bl, nl));
-    return 0.5 / max(from_view + from_light, SMALLEST_NORMAL);
+    float from_view = length(vec3(at * tv, ab * bv, nv));
+    float from_light = length(vec3(at * tl, ab * bl, nl));
+    float visibility = 0.5 / (nl * from_view + (nv * from_light + SMALLEST_NORMAL));
+    return min(nv, nl) > 0.0 ? visibility : 0.0;
 }
 
 /// The two alphas of a surface that is brushed along its tangent.
@@ -57,8 +53,8 @@ float v_smith_ggx_aniso(float tv, float bv, float nv, float tl, float bl, float 
 /// Error model: 3 ULP.
 vec2 alpha_aniso(float alpha, float strength) {
     float a = clamp(alpha, 0.0, 1.0);
-    float s = clamp(strength, 0.0, 1.0);
-    return vec2(a + (1.0 - a) * (s * s), a);
+    float s = max(strength, 0.0);
+    return vec2(a + (1.0 - a) * clamp(s * s, 0.0, 1.0), a);
 }
 
 /// Geometric specular antialiasing: alpha grows where the normal changes within a pixel, so that highlights do not flicker.
@@ -139,10 +135,10 @@ vec2 alpha_aniso_openpbr(float alpha, float strength) {
 /// Parameters: `lh` cosine l.h, [0, 1].
 /// Returns: `1/(4*lh^2)`, at least 0.25.
 /// Source: Kelemen, Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001; Filament uses it for its clear coat.
-/// Edges: a square below 2^-126 counts as that, so that the value is finite.
+/// Edges: never above 2.2e37, which it is for an `lh` of 0.
 /// Error model: 4 ULP.
 float v_kelemen(float lh) {
-    return 0.25 / max(lh * lh, SMALLEST_NORMAL);
+    return 0.25 / (lh * lh + SMALLEST_NORMAL);
 }
 
 /// A normal of a GGX surface's facets, as often as the viewer sees it.

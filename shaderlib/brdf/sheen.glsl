@@ -23,7 +23,7 @@
 float d_charlie(float nh, float alpha) {
     float c = clamp(nh, 0.0, 1.0);
     float e = 1.0 / max(alpha, 0.001);
-    return (2.0 + e) * safe_pow((1.0 - c) * (1.0 + c), 0.5 * e) * 0.15915494;
+    return (2.0 + e) * cosine_power((1.0 - c) * (1.0 + c), 0.5 * e) * 0.15915494;
 }
 
 /// A visibility of fibres that needs no roughness.

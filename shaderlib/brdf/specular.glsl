@@ -19,10 +19,8 @@
 /// Edges: 0 where the light is at or behind the horizon, so where `n` or `l` is zero; 1 in front for an `s` of 0, and a negative `s` counts as 0; 0 for a zero `v` and an `s` above 0.
 /// Error model: relative `s*ln2*2^-21 + |t|*ln2*u + (3 + 2|t|)*u + s*rel(r.v)`, t = s*log2(r.v), u = 2^-23; r.v has absolute error 2^-20.
 float phong(vec3 n, vec3 l, vec3 v, float s) {
-    if (!(dot(n, l) > 0.0)) {
-        return 0.0;
-    }
-    return safe_pow(min(dot(reflect(-l, n), v), 1.0), max(s, 0.0));
+    float power = cosine_power(dot(reflect(-l, n), v), s);
+    return dot(n, l) > 0.0 ? power : 0.0;
 }
 
 /// Phong's lobe as the book's shadow example computes it.
@@ -65,10 +63,7 @@ float phong_igl(vec3 n, vec3 l, vec3 v, float s) {
 /// Edges: 0 where `n_dot_l` is 0 or below: the light is at or behind the horizon; 1 in front for an `s` of 0, and a negative `s` counts as 0; 0 where `n` or `h` is zero and `s` is above 0.
 /// Error model: that of `safe_pow(n.h, s)`; n.h has absolute error 3*2^-23.
 float blinn_phong_half(vec3 n, vec3 h, float n_dot_l, float s) {
-    if (!(n_dot_l > 0.0)) {
-        return 0.0;
-    }
-    return safe_pow(min(dot(n, h), 1.0), max(s, 0.0));
+    return n_dot_l > 0.0 ? cosine_power(dot(n, h), s) : 0.0;
 }
 
 /// Blinn's lobe around the half vector.
@@ -79,7 +74,7 @@ float blinn_phong_half(vec3 n, vec3 h, float n_dot_l, float s) {
 /// Edges: 0 where the light is at or behind the horizon, so where `n` or `l` is zero; the half vector of `l = -v` is zero, so the result is 0 but for an `s` of 0; a negative `s` counts as 0; the half vector of a zero `v` is `l`.
 /// Error model: relative `s*ln2*2^-21 + |t|*ln2*u + (3 + 2|t|)*u + s*rel(n.h)`, t = s*log2(n.h), u = 2^-23; n.h has absolute error 12*2^-23/|l + v|.
 float blinn_phong(vec3 n, vec3 l, vec3 v, float s) {
-    return blinn_phong_half(n, safe_normalize(l + v, vec3(0.0)), dot(n, l), s);
+    return blinn_phong_half(n, normalize_or_zero(l + v), dot(n, l), s);
 }
 
 /// Blinn's lobe as the recipe computes it.
@@ -137,13 +132,11 @@ float d_ggx(float nh, float n_cross_h2, float alpha) {
 /// Edges: 0 where `nv` or `nl` is 0 or below: the light or the viewer is at or behind the horizon, and neither is seen by a facet; a negative `alpha` counts as its magnitude, one beyond 1 as 1; a denominator below 2^-126 counts as that.
 /// Error model: 10 ULP, relative.
 float v_smith_ggx(float nv, float nl, float alpha) {
-    if (!(nv > 0.0 && nl > 0.0)) {
-        return 0.0;
-    }
-    float a2 = min(alpha * alpha, 1.0);
-    float from_view = nl * sqrt(nv * nv * (1.0 - a2) + a2);
-    float from_light = nv * sqrt(nl * nl * (1.0 - a2) + a2);
-    return 0.5 / max(from_view + from_light, SMALLEST_NORMAL);
+    float a2 = clamp(alpha * alpha, 0.0, 1.0);
+    float from_view = sqrt(nv * nv * (1.0 - a2) + a2);
+    float from_light = sqrt(nl * nl * (1.0 - a2) + a2);
+    float visibility = 0.5 / (nl * from_view + (nv * from_light + SMALLEST_NORMAL));
+    return min(nv, nl) > 0.0 ? visibility : 0.0;
 }
 
 /// Schlick's approximation of Fresnel's reflectance.

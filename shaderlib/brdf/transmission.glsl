@@ -31,15 +31,12 @@ vec3 specular_f0(float ior, float weight, vec3 color) {
 /// Parameters: `color` linear colour that white light has after the distance `d`, [0, 1]; `x` length of the path through the volume, scene units; `d` distance at which white light has this colour, scene units.
 /// Returns: `color^(x/d)`, [0, 1].
 /// Source: Beer's law; Khronos Group, KHR_materials_volume, 2021.
-/// Edges: 1 for an `x` of 0 or below, and for a `d` of 0 or below, which counts as infinite; a `color` outside [0, 1] is clamped to it; x/d is at most 1e6.
+/// Edges: 1 for an `x` or a `d` below 2^-126: such a `d` counts as infinite; a `color` outside [0, 1] is clamped to it; x/d is at most 1e6.
 /// Error model: that of `safe_pow` with an exponent of relative error 2^-22.
 vec3 volume_transmittance(vec3 color, float x, float d) {
-    if (!(x > 0.0 && d > 0.0)) {
-        return vec3(1.0);
-    }
-    vec3 c = min(color, vec3(1.0));
-    float e = x / max(d, x * 1e-6);
-    return vec3(safe_pow(c.x, e), safe_pow(c.y, e), safe_pow(c.z, e));
+    float e = min(x, d) >= SMALLEST_NORMAL ? x / max(d, x * 1e-6) : 0.0;
+    vec3 l = mix(vec3(-1e30), log2(color), greaterThanEqual(color, vec3(SMALLEST_NORMAL)));
+    return clamp(exp2(e * l), vec3(0.0), vec3(1.0));
 }
 
 /// The way of a refracted view ray to the far side of a body.
@@ -83,9 +80,10 @@ float btdf_thin(vec3 n, vec3 l, vec3 v, float alpha) {
     if (!(nl > 0.0 && nv > 0.0)) {
         return 0.0;
     }
-    vec3 h = safe_normalize(l + 2.0 * nl * n + v, n);
+    // Both sides are above the surface now, so their sum is not zero.
+    vec3 h = normalize_or_zero(l + 2.0 * nl * n + v);
     vec3 across = cross(n, h);
-    float a2 = min(alpha * alpha, 1.0);
+    float a2 = clamp(alpha * alpha, 0.0, 1.0);
     float from_light = nl + sqrt(a2 + (1.0 - a2) * nl * nl);
     float from_view = nv + sqrt(a2 + (1.0 - a2) * nv * nv);
     return min(d_ggx(dot(n, h), dot(across, across), alpha), 1e25) / max(from_light * from_view, 1e-12);
@@ -130,7 +128,7 @@ float btdf_volume(vec3 n, vec3 l, vec3 v, float alpha, float ior) {
         return 0.0;
     }
     vec3 across = cross(n, h);
-    float a2 = min(alpha * alpha, 1.0);
+    float a2 = clamp(alpha * alpha, 0.0, 1.0);
     float from_light = nl + sqrt(a2 + (1.0 - a2) * nl * nl);
     float from_view = nv + sqrt(a2 + (1.0 - a2) * nv * nv);
     // The product of the squared sizes would overflow for long vectors.

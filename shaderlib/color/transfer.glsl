@@ -19,10 +19,8 @@
 /// Edges: a negative input counts as 0.
 /// Error model: that of `safe_pow(x, 1/2.4)` times 1.055 + 2^-24 + 2 ULP; either branch at 0.0031308, where they differ by 3e-8.
 float srgb_from_linear_channel(float x) {
-    if (!(x > 0.0031308)) {
-        return 12.92 * max(x, 0.0);
-    }
-    return 1.055 * safe_pow(x, 0.41666667) - 0.055;
+    float x1 = max(x, 0.0);
+    return x1 > 0.0031308 ? 1.055 * exp2(0.41666667 * log2(x1)) - 0.055 : 12.92 * x1;
 }
 
 /// The linear value of one sRGB channel.
@@ -33,10 +31,8 @@ float srgb_from_linear_channel(float x) {
 /// Edges: a negative input counts as 0.
 /// Error model: that of `safe_pow((x + 0.055)/1.055, 2.4)` + 7 ULP; either branch at 0.04045, where they differ by 1e-8.
 float linear_from_srgb_channel(float x) {
-    if (!(x > 0.04045)) {
-        return max(x, 0.0) / 12.92;
-    }
-    return safe_pow((x + 0.055) / 1.055, 2.4);
+    float x1 = max(x, 0.0);
+    return x1 > 0.04045 ? exp2(2.4 * log2((x1 + 0.055) / 1.055)) : x1 / 12.92;
 }
 
 /// The sRGB code of a linear colour.
@@ -91,13 +87,10 @@ vec3 tonemap_aces(vec3 c) {
 /// Parameters: `d` distance to the viewer, scene units; `start`, `end` distances where fog begins and hides all, scene units.
 /// Returns: `clamp((end - d)/(end - start), 0, 1)`: 1 is clear, 0 all fog: mix(fog, colour, share).
 /// Source: OpenGL 2.1 specification, section 3.10 "Fog", linear.
-/// Edges: 1 for a `d` before both `start` and `end`, so for negative ones; a hard edge at `end`, itself clear, where `end` is not beyond `start`.
+/// Edges: 1 for a `d` before both `start` and `end`, so for negative ones; a hard edge at `end`, itself all fog, where `end` is not beyond `start`.
 /// Error model: absolute 2^-23*(|end| + |d|)/(end - start) + 3*2^-23.
 float fog_linear(float d, float start, float end) {
-    if (!(end > start)) {
-        return d <= end ? 1.0 : 0.0;
-    }
-    return clamp((end - d) / (end - start), 0.0, 1.0);
+    return clamp((end - d) / max(end - start, 1e-30), 0.0, 1.0);
 }
 
 /// The clear share of a view through fog of even density.

@@ -33,11 +33,11 @@ vec3 ltc_edge(vec3 a, vec3 b) {
 /// Parameters: `n` unit.
 /// Returns: a unit vector, the same for the same `n`.
 /// Source: the cross product with an axis that is not along `n`.
-/// Edges: (1, 0, 0) for a zero vector.
+/// Edges: zero for a zero vector.
 /// Error model: absolute 4*2^-23.
 vec3 any_tangent(vec3 n) {
     vec3 axis = abs(n.x) > 0.6 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    return safe_normalize(cross(n, axis), vec3(1.0, 0.0, 0.0));
+    return normalize_or_zero(cross(n, axis));
 }
 
 /// The integral of a linearly transformed cosine over a rectangle.
@@ -172,12 +172,7 @@ float disk_irradiance(float mu, float facing, float sin2) {
 /// Error model: absolute 2^-20*|l|.
 vec3 nearest_sphere(vec3 l, vec3 r, float radius) {
     vec3 c = r * max(dot(l, r), 0.0) - l;
-    float far = length(c);
-    float reach = max(radius, 0.0);
-    if (!(far > reach)) {
-        return l + c;
-    }
-    return l + c * (reach / far);
+    return l + c * clamp(radius * inversesqrt(dot(c, c) + SMALLEST_NORMAL), 0.0, 1.0);
 }
 
 /// The representative point of a tubular light for a reflection.
@@ -191,10 +186,8 @@ vec3 nearest_tube(vec3 l0, vec3 l1, vec3 r, float radius) {
     vec3 axis = l1 - l0;
     vec3 across = axis - r * dot(axis, r);
     float d2 = dot(across, across);
-    if (!(d2 > 1e-10 * dot(axis, axis))) {
-        return nearest_sphere(l0, r, radius);
-    }
-    return nearest_sphere(l0 + axis * clamp(-dot(l0, across) / d2, 0.0, 1.0), r, radius);
+    float share = clamp(-dot(l0, across) / d2, 0.0, 1.0);
+    return nearest_sphere(l0 + axis * (d2 > 1e-10 * dot(axis, axis) ? share : 0.0), r, radius);
 }
 
 /// The roughness of a lobe widened by the size of a light.
@@ -207,10 +200,7 @@ vec3 nearest_tube(vec3 l0, vec3 l1, vec3 r, float radius) {
 float area_alpha(float alpha, float radius, float d) {
     float size = max(radius, 0.0);
     // Nearer than a quarter of the size the sum is above 1.
-    if (!(d > 0.25 * size)) {
-        return size > 0.0 ? 1.0 : clamp(alpha, 0.0, 1.0);
-    }
-    return clamp(alpha + 0.5 * size / d, 0.0, 1.0);
+    return clamp(alpha + 0.5 * size / max(d, 0.25 * size + SMALLEST_NORMAL), 0.0, 1.0);
 }
 
 /// The normalisation factor of a lobe that was widened by the size of a light.
@@ -221,13 +211,7 @@ float area_alpha(float alpha, float radius, float d) {
 /// Edges: 1 where `wide` is not larger than `alpha`; 0 for an `alpha` of 0 or less that was widened.
 /// Error model: 6 ULP.
 float area_energy(float alpha, float wide) {
-    if (!(wide > alpha)) {
-        return 1.0;
-    }
-    if (!(alpha > 0.0)) {
-        return 0.0;
-    }
-    float ratio = alpha / wide;
+    float ratio = max((alpha + SMALLEST_NORMAL) / (max(wide, alpha) + SMALLEST_NORMAL), 0.0);
     return ratio * ratio;
 }
 

@@ -20,10 +20,7 @@
 /// Error model: 2.5 ULP (division) + 3 ULP (sum and products of terms of at least 0).
 float polynomial(float d, vec3 k) {
     float q = k.x + d * (k.y + d * k.z);
-    if (!(q >= SMALLEST_NORMAL)) {
-        return 1.0;
-    }
-    return 1.0 / q;
+    return q >= SMALLEST_NORMAL ? 1.0 / q : 1.0;
 }
 
 /// A straight line from 1 at the light to 0 at its radius.
@@ -34,10 +31,8 @@ float polynomial(float d, vec3 k) {
 /// Edges: 0 everywhere for a `radius` of 0 or less; exactly 0 at and beyond the radius; 1 for a negative `d` otherwise.
 /// Error model: absolute 2.5*2^-23*min(d/radius, 1) + 2^-24.
 float linear_radius(float d, float radius) {
-    if (!(max(d, 0.0) < radius)) {
-        return 0.0;
-    }
-    return 1.0 - max(d, 0.0) / radius;
+    float x = clamp(d / radius, 0.0, 1.0);
+    return radius > 0.0 ? 1.0 - x : 0.0;
 }
 
 /// The inverse-square law, bounded near the light.
@@ -74,12 +69,9 @@ float window(float d2, float inv_range2) {
 /// Edges: 1 for a `range` of 0 or less, and for a negative `d`; exactly 0 at and beyond the range.
 /// Error model: absolute 12*x*2^-23 + 2^-24, with x = min((d/range)^4, 1).
 float range_gltf(float d, float range) {
-    if (!(range > 0.0)) {
-        return 1.0;
-    }
     float x = clamp(d / range, 0.0, 1.0);
     float x2 = x * x;
-    return 1.0 - x2 * x2;
+    return range > 0.0 ? 1.0 - x2 * x2 : 1.0;
 }
 
 /// A power of the distance, windowed by a cutoff distance, as three.js attenuates its lights.
@@ -91,11 +83,8 @@ float range_gltf(float d, float range) {
 /// Error model: that of `safe_pow(d, decay)` + 4 ULP + absolute 24*x*2^-23 of the falloff, with x = min((d/cutoff)^4, 1).
 float decay_cutoff(float d, float cutoff, float decay) {
     float falloff = 1.0 / max(safe_pow(d, decay), 0.01);
-    if (!(cutoff > 0.0)) {
-        return falloff;
-    }
     float x = min(d / cutoff, 1.0);
-    return falloff * window(x * x, 1.0);
+    return falloff * (cutoff > 0.0 ? window(x * x, 1.0) : 1.0);
 }
 
 #ifdef LAMPLIGHT_PREFIX

@@ -41,10 +41,7 @@ float cone_hard_exclusive(float c, float cutoff) {
 /// Edges: a cone wider than a half space (a `cutoff` below 0) is dark behind the light, where the example takes a power of a negative number; 1 inside the cone for an `e` of 0, as which a negative one counts; a `c` above 1 counts as 1.
 /// Error model: that of `safe_pow(c, e)`; either value where `c` and `cutoff` are closer than their errors.
 float cone_exponent(float c, float cutoff, float e) {
-    if (!(c >= cutoff)) {
-        return 0.0;
-    }
-    return safe_pow(min(c, 1.0), max(e, 0.0));
+    return c >= cutoff ? cosine_power(c, e) : 0.0;
 }
 
 /// A smooth step from 0 at the outer cone to 1 at the inner one.
@@ -52,13 +49,10 @@ float cone_exponent(float c, float cutoff, float e) {
 /// Parameters: `c` cosine of the angle to the axis, [-1, 1]; `inner` and `outer` cosines of the half angles, `inner` above `outer`.
 /// Returns: `smoothstep(outer, inner, c)`, in [0, 1].
 /// Source: the cubic of the WGSL specification, "smoothstep", with cosines as edges.
-/// Edges: a hard edge at `outer`, itself lit, where `inner` is not above `outer`; a `c` outside [-1, 1] is compared as it is.
+/// Edges: a hard edge at `outer`, itself dark, where `inner` is not above `outer`; a `c` outside [-1, 1] is compared as it is.
 /// Error model: absolute 1.5*e(t) + 2^-22, with e(t) = 2^-23*(|c| + |outer| + |inner|)/(inner - outer) + 2.5*2^-23.
 float cone_smooth(float c, float inner, float outer) {
-    if (!(inner > outer)) {
-        return c >= outer ? 1.0 : 0.0;
-    }
-    float t = clamp((c - outer) / (inner - outer), 0.0, 1.0);
+    float t = clamp((c - outer) / max(inner - outer, 1e-30), 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
 }
 

@@ -49,7 +49,7 @@ void main() {
     vec3 start = place.xyz / place.w;
     // A light without a place has the same direction everywhere, and no point lies behind it.
     vec3 offset = march.lamp.xyz - march.lamp.w * start;
-    vec3 l = safe_normalize(offset, vec3(0.0));
+    vec3 l = normalize_or_zero(offset);
     float reach = march.lamp.w > 0.0 ? min(march.reach, length(offset)) : march.reach;
 #if JITTER
     float jitter = interleaved_gradient_noise(gl_FragCoord.xy);

@@ -14,7 +14,7 @@
 #include "areas.glsl"
 #endif
 #include "forward.glsl"
-#if LIGHTS != LIGHTS_NONE && METALLIC_ROUGHNESS
+#if LIGHTS != LIGHTS_NONE && METALLIC_ROUGHNESS || LIGHTS != LIGHTS_NONE && SPECULAR == SPECULAR_GGX && !METALLIC_ROUGHNESS
 #include "layers.glsl"
 #endif
 
@@ -89,10 +89,16 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
 #if CONTACT
     surface.visibility *= contact_visibility(gl_FragCoord.xy);
 #endif
+#if SPECULAR == SPECULAR_GGX && !METALLIC_ROUGHNESS
+    surface.facets = facets_of(surface.normal, surface.view, surface.material.roughness);
+#endif
 #if AREA == AREA_RECTANGLE && SPECULAR == SPECULAR_GGX
     surface.lobe = table_lobe(dot(surface.normal, surface.view), surface.material.roughness);
 #endif
     Accum sum = lit(surface);
+#if METALLIC_ROUGHNESS
+    sum.scattered *= surface.material.ambient;
+#endif
 #if OCCLUSION == OCCLUSION_SCREEN && AMBIENT == AMBIENT_IBL && !METALLIC_ROUGHNESS
     // The highlights of lamps are summed up, so only the mirrored environment loses by occlusion.
     surface.material.specular *= specular_occlusion(dot(surface.normal, surface.view), open, highlight_alpha(surface.material));
@@ -100,7 +106,9 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
 #if AMBIENT == AMBIENT_IBL && !METALLIC_ROUGHNESS
     sum = add_environment(sum, surface);
 #endif
-#if METALLIC_ROUGHNESS && OCCLUSION == OCCLUSION_SCREEN && AMBIENT == AMBIENT_IBL
+#if METALLIC_ROUGHNESS && AMBIENT == AMBIENT_CONSTANT
+    return layered_even(surface.layered, sum.scattered, surface.material.emission) + sum.reflected;
+#elif METALLIC_ROUGHNESS && OCCLUSION == OCCLUSION_SCREEN && AMBIENT == AMBIENT_IBL
     Around around = occluded(light_around(surface, sum.scattered), surface.layered, open);
     return layered_ambient(surface.layered, around, surface.material.emission) + sum.reflected;
 #elif METALLIC_ROUGHNESS

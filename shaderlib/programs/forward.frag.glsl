@@ -126,7 +126,7 @@ vec3 hazy(vec3 color, vec3 position) {
     vec3 eye = camera.world_from_view[3].xyz;
     float reach = distance(position, eye);
 #if FOG == FOG_HEIGHT || FOG_SUN
-    vec3 view = safe_normalize(position - eye, vec3(0.0));
+    vec3 view = normalize_or_zero(position - eye);
 #endif
 #if FOG_SUN
     vec3 air = haze.color + haze.sun * hg(dot(haze.to_sun, view), haze.forwardness);
@@ -236,7 +236,7 @@ vec3 baked(vec2 uv) {
 #if LIGHTS == LIGHTS_NONE && AMBIENT == AMBIENT_IBL
 /// The colour of the surface where no lamp shines.
 vec3 shade(vec3 base) {
-    vec3 normal = safe_normalize(in_normal, vec3(0.0));
+    vec3 normal = normalize_or_zero(in_normal);
     vec3 mirrored = reflect(-towards_viewer(in_position), normal);
     vec3 diffuse = texture(samplerCube(sky_diffuse, sky_sampler), normal).rgb;
     vec3 specular = texture(samplerCube(sky_specular, sky_sampler), mirrored).rgb;
@@ -247,9 +247,9 @@ vec3 shade(vec3 base) {
 #if AMBIENT == AMBIENT_NONE
     vec3 light = baked(in_light_uv);
 #elif LIGHTMAP
-    vec3 light = ambient_light(safe_normalize(in_normal, vec3(0.0))) + baked(in_light_uv);
+    vec3 light = ambient_light(normalize_or_zero(in_normal)) + baked(in_light_uv);
 #else
-    vec3 light = ambient_light(safe_normalize(in_normal, vec3(0.0)));
+    vec3 light = ambient_light(normalize_or_zero(in_normal));
 #endif
     return base * light;
 }
@@ -277,7 +277,7 @@ vec3 shade(
 ) {
     Surface surface = zero_surface();
     surface.position = in_position;
-    surface.normal = safe_normalize(in_normal, vec3(0.0));
+    surface.normal = normalize_or_zero(in_normal);
 #if TWO_SIDED
     surface.normal = flip_if_back(surface.normal, front);
 #endif
@@ -339,6 +339,9 @@ vec3 shade(
 #if CLEARCOAT
     surface.layered = coated(surface.layered, coat_normal);
 #endif
+#if SPECULAR == SPECULAR_GGX && !METALLIC_ROUGHNESS
+    surface.facets = facets_of(surface.normal, surface.view, surface.material.roughness);
+#endif
 #if AREA == AREA_RECTANGLE && SPECULAR == SPECULAR_GGX
     surface.lobe = table_lobe(dot(surface.normal, surface.view), surface.material.roughness);
 #endif
@@ -346,6 +349,9 @@ vec3 shade(
     surface.coat_lobe = table_lobe(dot(coat_normal, surface.view), surface.layered.own.clearcoat_roughness);
 #endif
     Accum sum = lit(surface);
+#if METALLIC_ROUGHNESS
+    sum.scattered *= surface.material.ambient;
+#endif
 #if LIGHTMAP && METALLIC_ROUGHNESS
     sum.scattered += baked(in_light_uv);
 #elif LIGHTMAP
@@ -358,7 +364,9 @@ vec3 shade(
 #if AMBIENT == AMBIENT_IBL && !METALLIC_ROUGHNESS
     sum = add_environment(sum, surface);
 #endif
-#if METALLIC_ROUGHNESS && OCCLUSION != OCCLUSION_NONE && AMBIENT == AMBIENT_IBL
+#if METALLIC_ROUGHNESS && AMBIENT == AMBIENT_CONSTANT
+    return layered_even(surface.layered, sum.scattered, surface.material.emission) + sum.reflected;
+#elif METALLIC_ROUGHNESS && OCCLUSION != OCCLUSION_NONE && AMBIENT == AMBIENT_IBL
     Around around = occluded(light_around(surface, sum.scattered), surface.layered, open);
     return layered_ambient(surface.layered, around, surface.material.emission) + sum.reflected;
 #elif METALLIC_ROUGHNESS

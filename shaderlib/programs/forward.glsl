@@ -23,10 +23,10 @@
 #if SPECULAR == SPECULAR_GGX && AREA == AREA_RECTANGLE
 #include "../brdf/energy.glsl"
 #endif
-#if LIGHTS != LIGHTS_NONE || SPECULAR == SPECULAR_GGX
+#if LIGHTS != LIGHTS_NONE
 #include "../brdf/specular.glsl"
 #endif
-#if ATTENUATION == ATTENUATION_INVERSE_SQUARE_WINDOW || ATTENUATION == ATTENUATION_RANGE_GLTF
+#if ATTENUATION != ATTENUATION_POLYNOMIAL || LIGHTS != LIGHTS_NONE
 #include "../lighting/attenuation.glsl"
 #endif
 #if LIGHTS != LIGHTS_NONE
@@ -36,7 +36,7 @@
 #if LIGHTS != LIGHTS_NONE || OCCLUSION != OCCLUSION_NONE && !METALLIC_ROUGHNESS
 #include "../lighting/material.glsl"
 #endif
-#if CONE == CONE_HARD || CONE == CONE_SMOOTH || CONE == CONE_CONE_SCALE_OFFSET
+#if CONE != CONE_EXPONENT || LIGHTS != LIGHTS_NONE
 #include "../lighting/spot.glsl"
 #endif
 #if SHADOW_LIGHT != SHADOW_LIGHT_POINT && (SHADOW == SHADOW_PCF_VOGEL || SHADOW == SHADOW_PCSS)
@@ -50,9 +50,6 @@
 #if SHADOW == SHADOW_PCSS
 #include "../shadow/penumbra.glsl"
 #endif
-#if SPECULAR != SPECULAR_NONE || DIFFUSE == DIFFUSE_OREN_NAYAR || AMBIENT == AMBIENT_IBL
-#include "../surface/view.glsl"
-#endif
 #include "areas.glsl"
 #if CASCADES
 #include "cascades.glsl"
@@ -60,7 +57,7 @@
 #if LIGHTS != LIGHTS_NONE && CLUSTERED
 #include "clusters.glsl"
 #endif
-#if TRANSMISSION && AMBIENT != AMBIENT_NONE && AMBIENT != AMBIENT_CONSTANT || METALLIC_ROUGHNESS
+#if SPECULAR == SPECULAR_GGX || TRANSMISSION && AMBIENT != AMBIENT_NONE && AMBIENT != AMBIENT_CONSTANT || METALLIC_ROUGHNESS
 #include "layers.glsl"
 #endif
 #if LIGHTS != LIGHTS_NONE && AMBIENT == AMBIENT_DDGI || METALLIC_ROUGHNESS && AMBIENT == AMBIENT_DDGI
@@ -251,6 +248,10 @@ struct Surface {
     /// How much of the shadow caster's light arrives.
     float visibility;
 #endif
+#if SPECULAR == SPECULAR_GGX && !METALLIC_ROUGHNESS
+    /// The facets of the highlight.
+    Facets facets;
+#endif
 #if METALLIC_ROUGHNESS
     /// What `metallic_roughness` makes of the material.
     Layered layered;
@@ -276,6 +277,9 @@ Surface zero_surface() {
 #if SHADOW != SHADOW_NONE
     zero.visibility = 0.0;
 #endif
+#if SPECULAR == SPECULAR_GGX && !METALLIC_ROUGHNESS
+    zero.facets = Facets(vec3(0.0), 0.0, 0.0, 0.0, 0.0);
+#endif
 #if METALLIC_ROUGHNESS
     zero.layered = zero_layered();
 #endif
@@ -286,6 +290,19 @@ Surface zero_surface() {
     zero.coat_lobe = mat3(0.0);
 #endif
     return zero;
+}
+#endif
+
+#if LIGHTS == LIGHTS_MIXED && (ATTENUATION != ATTENUATION_POLYNOMIAL || CONE != CONE_EXPONENT)
+/// The direction to a lamp of any kind and its distance, the factors 1; all 0 for a lamp that is off.
+LightSample towards_lamp(Light light, vec3 position) {
+    if (light.kind != LIGHT_DIRECTIONAL && light.kind != LIGHT_POINT && light.kind != LIGHT_SPOT) {
+        return LightSample(vec3(0.0), 0.0, 0.0, 0.0);
+    }
+    vec3 offset = light.kind == LIGHT_DIRECTIONAL ? -light.axis : light.position - position;
+    float d2 = dot(offset, offset);
+    float inverse_ = inversesqrt(max(d2, SMALLEST_NORMAL));
+    return LightSample(offset * inverse_, d2 * inverse_, 1.0, 1.0);
 }
 #endif
 
@@ -336,19 +353,31 @@ float cone(Light light, LightSample arriving) {
 /// What of a lamp arrives at a point.
 LightSample sample_lamp(Light light, vec3 position) {
 #if LIGHTS == LIGHTS_DIRECTIONAL
-    LightSample arriving = sample_directional(light);
+    // The axis is unit, so it needs no `sample_directional`.
+    LightSample arriving = LightSample(-light.axis, 0.0, 1.0, 1.0);
 #elif LIGHTS == LIGHTS_POINT
     LightSample arriving = sample_point(light, position);
 #elif LIGHTS == LIGHTS_SPOT
     LightSample arriving = sample_spot(light, position);
-#elif LIGHTS == LIGHTS_MIXED
+#endif
+#if LIGHTS == LIGHTS_MIXED && ATTENUATION == ATTENUATION_POLYNOMIAL && CONE == CONE_EXPONENT
     LightSample arriving = sample_light(light, position);
+#elif LIGHTS == LIGHTS_MIXED
+    LightSample arriving = towards_lamp(light, position);
 #endif
 #if ATTENUATION != ATTENUATION_POLYNOMIAL
     arriving.attenuation = falloff(light, arriving);
+#elif LIGHTS == LIGHTS_MIXED && CONE != CONE_EXPONENT
+    if (light.kind != LIGHT_DIRECTIONAL) {
+        arriving.attenuation *= polynomial(arriving.distance, light.attenuation);
+    }
 #endif
 #if CONE != CONE_EXPONENT
     arriving.spot = cone(light, arriving);
+#elif LIGHTS == LIGHTS_MIXED && ATTENUATION != ATTENUATION_POLYNOMIAL
+    if (light.kind == LIGHT_SPOT) {
+        arriving.spot = cone_exponent(dot(-arriving.l, light.axis), light.cutoff, light.exponent);
+    }
 #endif
     return arriving;
 }
@@ -396,15 +425,9 @@ float specular_share(Surface surface, vec3 l) {
 #if SPECULAR == SPECULAR_GGX
 /// The microfacet highlight, times pi and n.l.
 vec3 ggx(Surface surface, vec3 l) {
-    vec3 n = surface.normal;
-    vec3 h = safe_normalize(l + surface.view, n);
-    vec3 n_cross_h = cross(n, h);
-    float alpha = max(surface.material.roughness * surface.material.roughness, LEAST_ALPHA);
-    float nl = clamp(dot(n, l), 0.0, 1.0);
-    // As in `programs/layers`: the limit just inside of outlines, not the 0 behind them.
-    float nv = clamp(abs(dot(n, surface.view)), 1e-4, 1.0);
-    float lobe = d_ggx(clamp(dot(n, h), 0.0, 1.0), dot(n_cross_h, n_cross_h), alpha) * v_smith_ggx(nv, nl, alpha);
-    return 3.14159265 * nl * lobe * f_schlick(surface.material.specular, 1.0, dot(surface.view, h));
+    HalfWay half_ = half_way(l, surface.view);
+    vec3 f0 = surface.material.specular;
+    return facets(surface.facets, dot(surface.normal, l), half_) * (f0 + (vec3(1.0) - f0) * half_.rim);
 }
 #endif
 
@@ -516,12 +539,12 @@ Accum add_lamp(Accum sum, Surface surface, uint i) {
     vec3 radiance = light.color * (arriving.attenuation * arriving.spot * visibility);
 #if AREA == AREA_NONE
     return Accum(
-        sum.scattered + light.ambient * surface.material.ambient * ambient,
+        sum.scattered + light.ambient * ambient,
         sum.reflected + radiance * layered_light(surface.layered, arriving.l, light.strength)
     );
 #else
     return Accum(
-        sum.scattered + light.ambient * surface.material.ambient * ambient,
+        sum.scattered + light.ambient * ambient,
         sum.reflected + radiance * layered_lamp(surface, light, arriving, i)
     );
 #endif
@@ -552,14 +575,18 @@ vec3 ambient_light(vec3 normal) {
 #endif
 
 #if LIGHTS != LIGHTS_NONE
-/// The sums of the light that leaves the point towards the viewer, without that of the environment maps.
+/// The sums of the light that leaves the point towards the viewer, without that of the environment maps. With
+/// `metallic_roughness`, `scattered` is the light from around, not yet multiplied by the share of the material.
 Accum lit(Surface surface) {
 #if AMBIENT == AMBIENT_NONE || AMBIENT == AMBIENT_IBL
     Accum sum = Accum(vec3(0.0), vec3(0.0));
 #elif AMBIENT == AMBIENT_DDGI
-    Accum sum = Accum(surface.material.ambient * probe_irradiance(surface.position, surface.normal), vec3(0.0));
+    Accum sum = Accum(probe_irradiance(surface.position, surface.normal), vec3(0.0));
 #else
-    Accum sum = Accum(surface.material.ambient * ambient_light(surface.normal), vec3(0.0));
+    Accum sum = Accum(ambient_light(surface.normal), vec3(0.0));
+#endif
+#if !METALLIC_ROUGHNESS && AMBIENT != AMBIENT_NONE && AMBIENT != AMBIENT_IBL
+    sum.scattered *= surface.material.ambient;
 #endif
 #if CLUSTERED
     uvec2 list = lamp_list(surface.position, camera.clip_from_world, camera.world_from_view);
@@ -612,7 +639,7 @@ vec3 towards_caster(Surface surface) {
 #if SHADOW_LIGHT == SHADOW_LIGHT_DIRECTIONAL
     return -light.axis;
 #else
-    return safe_normalize(light.position - surface.position, vec3(0.0));
+    return normalize_or_zero(light.position - surface.position);
 #endif
 }
 
@@ -655,7 +682,7 @@ vec3 receiver(Surface surface, Light light) {
 #elif SHADOW != SHADOW_NONE && !CASCADES
 vec3 receiver(Surface surface, Light light) {
     vec3 offset = light.position - surface.position;
-    vec3 l = safe_normalize(offset, vec3(0.0));
+    vec3 l = normalize_or_zero(offset);
     return normal_offset(surface.position, surface.normal, l, caster.texel * length(offset), caster.normal_offset);
 }
 #endif
@@ -885,7 +912,7 @@ Around light_around(Surface surface, vec3 scattered) {
 #if SPECULAR != SPECULAR_NONE || DIFFUSE == DIFFUSE_OREN_NAYAR || AMBIENT == AMBIENT_IBL
 /// Unit direction from a point to the viewer.
 vec3 towards_viewer(vec3 position) {
-    return view_local(position - camera.world_from_view[3].xyz);
+    return normalize_or_zero(camera.world_from_view[3].xyz - position);
 }
 #endif
 

@@ -86,7 +86,7 @@ void main() {
 #if FREQUENCY == FREQUENCY_VERTEX
     Surface surface = zero_surface();
     surface.position = position.xyz;
-    surface.normal = safe_normalize(normal, vec3(0.0));
+    surface.normal = normalize_or_zero(normal);
 #if SPECULAR != SPECULAR_NONE || DIFFUSE == DIFFUSE_OREN_NAYAR
     surface.view = towards_viewer(position.xyz);
 #endif

@@ -78,7 +78,7 @@ void main() {
 #else
     vec4 base = in_color;
 #endif
-    vec3 normal = safe_normalize(in_normal, vec3(0.0));
+    vec3 normal = normalize_or_zero(in_normal);
 #if TWO_SIDED
     normal = flip_if_back(normal, gl_FrontFacing);
 #endif

@@ -33,7 +33,9 @@
 #endif
 #include "../brdf/specular.glsl"
 #include "../brdf/transmission.glsl"
+#if ANISOTROPY
 #include "../math/safe.glsl"
+#endif
 #if AREA == AREA_SPHERE || AREA == AREA_TUBE
 #include "areas.glsl"
 #endif
@@ -129,6 +131,26 @@ Factors zero_factors() {
     return zero;
 }
 
+/// The facets of a surface as the viewer sees them: what their lobe does not have of the light.
+struct Facets {
+    vec3 normal;
+    /// Cosine towards the viewer, and the same without a sign.
+    float toward;
+    float nv;
+    float alpha;
+    /// What the facets hide from the viewer, in the Smith visibility.
+    float hidden;
+};
+
+/// What lies half way between a light and the viewer.
+struct HalfWay {
+    /// The sum of both directions, and its squared length.
+    vec3 sum;
+    float size2;
+    /// The fifth power of Schlick's approximation.
+    float rim;
+};
+
 /// A point of a layered surface, as far as it does not depend on lights. Every permutation has all
 /// members, so that functions are the same in all of them; without an extension, its members are
 /// neither set nor read, and drivers remove them.
@@ -144,12 +166,27 @@ struct Layered {
     vec3 f0;
     /// Scale and offset of the base's albedo.
     vec2 dfg;
+    /// The facets of the base.
+    Facets facets;
+    /// What a lamp's light is scattered with, before what is reflected of it.
+    vec3 scattering;
+    /// What the lobe of the base is multiplied by, where Schlick's power is 0, and what it gains up to 1:
+    /// the blend of the dielectric and the metal, with their compensations.
+    vec3 reflecting;
+    vec3 rising;
+    /// The largest channel of the dielectric's reflectance in the same way.
+    vec2 taken;
+    /// The reflectance of the dielectric, by its weight, and of the metal at normal incidence.
+    vec3 blend;
+    /// `iridescence`: reflectance of the film towards the viewer.
+    vec3 film;
     /// `anisotropy`: unit, along the brush.
     vec3 tangent;
     vec3 bitangent;
     /// `anisotropy`: along the tangent and the bitangent.
     vec2 alphas;
-    /// `clearcoat`: unit.
+    /// `clearcoat`: its facets, and its unit normal.
+    Facets coat_facets;
     vec3 coat_normal;
     /// `clearcoat`: share of the light that the coat reflects towards the viewer.
     float coat_share;
@@ -172,9 +209,17 @@ Layered zero_layered() {
     zero.own = zero_factors();
     zero.f0 = vec3(0.0);
     zero.dfg = vec2(0.0);
+    zero.facets = Facets(vec3(0.0), 0.0, 0.0, 0.0, 0.0);
+    zero.scattering = vec3(0.0);
+    zero.reflecting = vec3(0.0);
+    zero.rising = vec3(0.0);
+    zero.taken = vec2(0.0);
+    zero.blend = vec3(0.0);
+    zero.film = vec3(0.0);
     zero.tangent = vec3(0.0);
     zero.bitangent = vec3(0.0);
     zero.alphas = vec2(0.0);
+    zero.coat_facets = Facets(vec3(0.0), 0.0, 0.0, 0.0, 0.0);
     zero.coat_normal = vec3(0.0);
     zero.coat_share = 0.0;
     zero.coat_gain = 0.0;
@@ -239,6 +284,45 @@ float seen_cosine(vec3 normal, vec3 view) {
     return clamp(abs(dot(normal, view)), 1e-4, 1.0);
 }
 
+/// The facets of a surface of a perceptual roughness.
+Facets facets_of(vec3 normal, vec3 view, float roughness) {
+    float alpha = min(max(roughness * roughness, LEAST_ALPHA), 1.0);
+    float a2 = alpha * alpha;
+    float nv = seen_cosine(normal, view);
+    return Facets(normal, dot(normal, view), nv, alpha, sqrt(nv * nv * (1.0 - a2) + a2));
+}
+
+/// The largest channel.
+float largest_channel(vec3 color) {
+    return max(max(color.x, color.y), color.z);
+}
+
+/// The surface with what the lights of all lamps have in common.
+Layered ready(Layered surface) {
+    Layered at = surface;
+    float weight = (1.0 - at.own.metallic) * at.own.specular;
+    float gain = energy_compensation(vec3(1.0), at.dfg).x - 1.0;
+    vec3 of_dielectric = weight + at.f0 * (weight * gain);
+    vec3 of_metal = at.own.metallic + at.base * (at.own.metallic * gain);
+    at.reflecting = of_dielectric * at.f0 + of_metal * at.base;
+    at.rising = of_dielectric + of_metal - at.reflecting;
+    at.blend = at.f0 * weight + at.base * at.own.metallic;
+    float most = largest_channel(at.f0);
+    at.taken = at.own.specular * vec2(most, 1.0 - most);
+#if IRIDESCENCE
+    float plain = 1.0 - at.own.iridescence;
+    at.reflecting = at.reflecting * plain + (of_dielectric + of_metal) * at.film * at.own.iridescence;
+    at.rising *= plain;
+    at.taken = at.taken * plain + vec2(at.own.specular * largest_channel(at.film) * at.own.iridescence, 0.0);
+#endif
+#if !TRANSMISSION && !DIFFUSE_TRANSMISSION
+    at.scattering = at.base * (1.0 - at.own.metallic);
+#else
+    at.scattering = vec3(1.0 - at.own.metallic);
+#endif
+    return at;
+}
+
 /// The surface at a point.
 Layered layered(vec3 base, float roughness, vec3 normal, vec3 view, Factors own) {
     Layered at = zero_layered();
@@ -250,10 +334,12 @@ Layered layered(vec3 base, float roughness, vec3 normal, vec3 view, Factors own)
     at.roughness = clamp(roughness, 0.0, 1.0);
     at.f0 = specular_f0(layers.ior, 1.0, at.own.specular_color);
     at.dfg = dfg_approx(at.nv, at.roughness);
+    at.facets = facets_of(normal, view, at.roughness);
 #if IRIDESCENCE
     // Schlick's form lets a film without thickness reflect at grazing angles, so it is left out, as in
-    // Khronos Group's glTF Sample Renderer.
+    // Khronos Group's glTF Sample Renderer, which also has the film's colours of the viewer's angle.
     at.own.iridescence = own.iridescence_thickness > 0.0 ? own.iridescence : 0.0;
+    at.film = iridescence(1.0, layers.iridescence_ior, mix(at.f0, base, own.metallic), at.own.iridescence_thickness, at.nv);
 #endif
 #if SHEEN
     at.sheen_view = sheen_albedo(at.nv, at.own.sheen_roughness * at.own.sheen_roughness);
@@ -261,7 +347,7 @@ Layered layered(vec3 base, float roughness, vec3 normal, vec3 view, Factors own)
 #if VOLUME
     at.passing = volume_transmittance(layers.attenuation_color, at.own.thickness, layers.attenuation_distance);
 #endif
-    return at;
+    return ready(at);
 }
 
 #if ANISOTROPY
@@ -271,11 +357,13 @@ Layered brushed(Layered surface, vec4 tangent) {
     at.alphas = alpha_aniso(max(at.roughness * at.roughness, LEAST_ALPHA), at.own.anisotropy);
     // The isotropic surface whose facets are as wide.
     at.dfg = dfg_approx(at.nv, sqrt(sqrt(at.alphas.x * at.alphas.y)));
-    vec3 along = safe_normalize(tangent.xyz - at.normal * dot(at.normal, tangent.xyz), vec3(0.0));
+    vec3 along = normalize_or_zero(tangent.xyz - at.normal * dot(at.normal, tangent.xyz));
     vec3 across = cross(at.normal, along) * tangent.w;
     at.tangent = along * at.own.anisotropy_direction.x + across * at.own.anisotropy_direction.y;
     at.bitangent = cross(at.normal, at.tangent);
-    return at;
+    vec2 seen = vec2(dot(at.tangent, at.view), dot(at.bitangent, at.view)) * at.alphas;
+    at.facets.hidden = length(vec3(seen, at.nv));
+    return ready(at);
 }
 #endif
 
@@ -283,60 +371,59 @@ Layered brushed(Layered surface, vec4 tangent) {
 /// The surface with a coat, whose normal no texture bends.
 Layered coated(Layered surface, vec3 coat_normal) {
     Layered at = surface;
-    float cosine = seen_cosine(coat_normal, at.view);
+    at.coat_facets = facets_of(coat_normal, at.view, at.own.clearcoat_roughness);
     at.coat_normal = coat_normal;
-    at.coat_share = at.own.clearcoat * f_schlick(vec3(0.04), 1.0, cosine).x;
-    at.coat_gain = energy_compensation(vec3(1.0), dfg_approx(cosine, at.own.clearcoat_roughness)).x;
+    at.coat_share = at.own.clearcoat * f_schlick(vec3(0.04), 1.0, at.coat_facets.nv).x;
+    at.coat_gain = energy_compensation(vec3(1.0), dfg_approx(at.coat_facets.nv, at.own.clearcoat_roughness)).x;
     return at;
 }
 #endif
 
-/// Reflectance at the cosine `mu`, of a material that has `f0` at normal incidence.
-vec3 reflectance(Layered at, vec3 f0, float mu) {
-    vec3 plain = f_schlick(f0, 1.0, mu);
-#if !IRIDESCENCE
-    return plain;
-#else
-    vec3 film = iridescence(1.0, layers.iridescence_ior, f0, at.own.iridescence_thickness, mu);
-    return mix(plain, film, at.own.iridescence);
-#endif
-}
-
-/// The reflectance that the base's albedo is computed with: that of the film is towards the viewer.
+/// The reflectance that the base's albedo is computed with.
 vec3 mean_reflectance(Layered at, vec3 f0) {
 #if !IRIDESCENCE
     return f0;
 #else
-    vec3 film = iridescence(1.0, layers.iridescence_ior, f0, at.own.iridescence_thickness, at.nv);
-    return mix(f0, film, at.own.iridescence);
+    return mix(f0, at.film, at.own.iridescence);
 #endif
 }
 
-/// The largest channel.
-float largest_channel(vec3 color) {
-    return max(max(color.x, color.y), color.z);
+/// Half way between the unit directions to a light and to the viewer.
+HalfWay half_way(vec3 l, vec3 view) {
+    vec3 sum = l + view;
+    float size2 = dot(sum, sum);
+    // The cosine between the viewer and the half vector is half the length of the sum.
+    float x = clamp(1.0 - 0.5 * sqrt(size2), 0.0, 1.0);
+    float x2 = x * x;
+    return HalfWay(sum, size2, x2 * x2 * x);
 }
 
-/// The microfacets of a surface that reflects everything, times pi and n.l.
-float facets(vec3 normal, vec3 view, vec3 l, vec3 h, float roughness) {
-    float alpha = max(roughness * roughness, LEAST_ALPHA);
-    vec3 n_cross_h = cross(normal, h);
-    float nl = clamp(dot(normal, l), 0.0, 1.0);
-    float nv = seen_cosine(normal, view);
-    float d = d_ggx(clamp(dot(normal, h), 0.0, 1.0), dot(n_cross_h, n_cross_h), alpha);
-    return 3.14159265 * nl * d * v_smith_ggx(nv, nl, alpha);
+/// The microfacets of a surface that reflects everything, times pi and n.l: `d_ggx` and `v_smith_ggx`
+/// over one denominator, which the length of the half vector has been taken out of.
+float facets(Facets at, float nl, HalfWay half_) {
+    vec3 across = cross(at.normal, half_.sum);
+    float along = (nl + at.toward) * at.alpha;
+    float spread = dot(across, across) + along * along;
+    float a2 = at.alpha * at.alpha;
+    float lit = max(nl, 0.0);
+    float visible = lit * at.hidden + at.nv * sqrt(lit * lit * (1.0 - a2) + a2);
+    float peak = at.alpha * half_.size2;
+    return 0.5 * lit * peak * peak / (spread * spread * visible + 1e-30);
 }
 
 #if ANISOTROPY
-/// The same for a brushed surface.
-float brushed_facets(Layered at, vec3 l, vec3 h) {
-    float nl = clamp(dot(at.normal, l), 0.0, 1.0);
-    float nh = clamp(dot(at.normal, h), 0.0, 1.0);
-    float d = d_ggx_aniso(dot(at.tangent, h), dot(at.bitangent, h), nh, at.alphas.x, at.alphas.y);
-    return 3.14159265 * nl * d * v_smith_ggx_aniso(
-        dot(at.tangent, at.view), dot(at.bitangent, at.view), at.nv,
-        dot(at.tangent, l), dot(at.bitangent, l), nl, at.alphas.x, at.alphas.y
-    );
+/// The same for a brushed surface, by `d_ggx_aniso` and `v_smith_ggx_aniso`.
+float brushed_facets(Layered at, vec3 l, float nl, HalfWay half_) {
+    float a2 = at.alphas.x * at.alphas.y;
+    float t = dot(at.tangent, half_.sum) * at.alphas.y;
+    float b = dot(at.bitangent, half_.sum) * at.alphas.x;
+    float along = (nl + at.facets.toward) * a2;
+    float spread = t * t + b * b + along * along;
+    float lit = max(nl, 0.0);
+    vec2 seen = vec2(dot(at.tangent, l), dot(at.bitangent, l)) * at.alphas;
+    float visible = lit * at.facets.hidden + at.nv * length(vec3(seen, lit));
+    float peak = a2 * half_.size2;
+    return 0.5 * lit * a2 * peak * peak / (spread * spread * visible + 1e-30);
 }
 #endif
 
@@ -362,9 +449,14 @@ float through_roughness(Layered at) {
 }
 #endif
 
-/// What a dielectric does with the light of a lamp that it does not reflect.
-vec3 below_light(Layered at, vec3 l) {
-    float nl = dot(at.normal, l);
+#if !TRANSMISSION && !DIFFUSE_TRANSMISSION
+/// What a dielectric does with the light of a lamp that it does not reflect. Without a share that passes,
+/// this is a cosine, and the colour of the base is in `scattering`.
+vec3 below_light(Layered at, vec3 l, float nl) {
+    return vec3(nl);
+}
+#else
+vec3 below_light(Layered at, vec3 l, float nl) {
 #if !DIFFUSE_TRANSMISSION
     vec3 scattered = at.base * max(nl, 0.0);
 #endif
@@ -381,88 +473,95 @@ vec3 below_light(Layered at, vec3 l) {
     return mix(scattered, at.base * passing_share(at) * lobe, at.own.transmission);
 #endif
 }
+#endif
 
 #if SHEEN
 /// The light with a sheen over it.
-vec3 sheen_over(Layered at, vec3 light, vec3 l, vec3 h, float strength) {
+vec3 sheen_over(Layered at, vec3 light, float nl, HalfWay half_, float strength) {
     float alpha = at.own.sheen_roughness * at.own.sheen_roughness;
-    float nl = dot(at.normal, l);
-    float lobe = d_charlie(dot(at.normal, h), alpha) * v_neubelt(nl, at.nv);
+    float nh = (nl + at.facets.toward) * inversesqrt(max(half_.size2, 1e-30));
+    float lobe = d_charlie(nh, alpha) * v_neubelt(nl, at.nv);
     float scale = sheen_scale(at.own.sheen_color, at.sheen_view, sheen_albedo(abs(nl), alpha));
     return at.own.sheen_color * (strength * 3.14159265 * max(nl, 0.0) * lobe) + light * scale;
 }
 #endif
 
-/// The light of a lamp of colour 1 in the direction `l` that leaves the surface towards the viewer.
-/// `strength` is a factor on the highlights.
-vec3 layered_light(Layered at, vec3 l, float strength) {
-    float nl = dot(at.normal, l);
-    // A facet that light passes mirrors it from the viewer's side.
-    vec3 h = safe_normalize(l - at.normal * (2.0 * min(nl, 0.0)) + at.view, at.normal);
-    float mu = clamp(dot(at.view, h), 0.0, 1.0);
-#if ANISOTROPY
-    float lobe = strength * brushed_facets(at, l, h);
-#else
-    float lobe = strength * facets(at.normal, at.view, l, h, at.roughness);
-#endif
-    vec3 dielectric = at.own.specular * reflectance(at, at.f0, mu);
-    vec3 below = below_light(at, l) * (1.0 - largest_channel(dielectric));
-    vec3 of_dielectric = below + dielectric * energy_compensation(at.f0, at.dfg) * lobe;
-    vec3 of_metal = reflectance(at, at.base, mu) * energy_compensation(at.base, at.dfg) * lobe;
-    vec3 light = mix(of_dielectric, of_metal, at.own.metallic);
+/// The layers over the light `below` that the dielectric scatters: the `lobe` of the base, whose light comes
+/// from `half` of the way, the sheen, and the coat, which takes its light from `l`.
+vec3 layers_over(
+    Layered at,
+    vec3 below,
+    vec3 l,
+    float nl,
+    HalfWay half_,
+    float lobe,
+    HalfWay coat_half,
+    float strength,
+    float coat_gain
+) {
+    float left = 1.0 - at.taken.x - at.taken.y * half_.rim;
+    vec3 light = at.scattering * below * left + (at.reflecting + at.rising * half_.rim) * lobe;
 #if SHEEN
-    light = sheen_over(at, light, l, h, strength);
+    light = sheen_over(at, light, nl, half_, strength);
 #endif
 #if !CLEARCOAT
     return light;
 #else
-    vec3 half_way = safe_normalize(l + at.view, at.coat_normal);
-    float coat = strength * at.coat_gain * facets(at.coat_normal, at.view, l, half_way, at.own.clearcoat_roughness);
+    float coat = coat_gain * facets(at.coat_facets, dot(at.coat_normal, l), coat_half);
     return coat_mix(light, vec3(coat), 1.0, at.coat_share);
 #endif
+}
+
+/// The light of a lamp of colour 1 in the direction `l` that leaves the surface towards the viewer.
+/// `strength` is a factor on the highlights.
+vec3 layered_light(Layered at, vec3 l, float strength) {
+#if TRANSMISSION || DIFFUSE_TRANSMISSION
+    // Only what passes the surface has a use for light from behind.
+    float nl = dot(at.normal, l);
+#else
+    float nl = clamp(dot(at.normal, l), 0.0, 1.0);
+#endif
+#if TRANSMISSION || DIFFUSE_TRANSMISSION
+    // A facet that light passes mirrors it from the viewer's side.
+    HalfWay half_ = half_way(l - at.normal * (2.0 * min(nl, 0.0)), at.view);
+#else
+    HalfWay half_ = half_way(l, at.view);
+#endif
+#if ANISOTROPY
+    float lobe = strength * brushed_facets(at, l, nl, half_);
+#else
+    float lobe = strength * facets(at.facets, nl, half_);
+#endif
+    return layers_over(at, below_light(at, l, nl), l, nl, half_, lobe, half_, strength, strength * at.coat_gain);
 }
 
 #if AREA == AREA_SPHERE || AREA == AREA_TUBE
 /// The light of a lamp of colour 1 with an area, of which `fallen` falls onto the surface, and which
 /// the base and the coat see in highlights. `strength` is a factor on these.
 vec3 layered_area_light(Layered at, float fallen, Seen base, Seen coat, float strength) {
-    vec3 h = safe_normalize(base.l + at.view, at.normal);
-    float mu = clamp(dot(at.view, h), 0.0, 1.0);
-    float lobe = strength * base.gain * facets(at.normal, at.view, base.l, h, at.roughness);
-    vec3 dielectric = at.own.specular * reflectance(at, at.f0, mu);
-    vec3 below = at.base * (fallen * (1.0 - largest_channel(dielectric)));
-    vec3 of_dielectric = below + dielectric * energy_compensation(at.f0, at.dfg) * lobe;
-    vec3 of_metal = reflectance(at, at.base, mu) * energy_compensation(at.base, at.dfg) * lobe;
-    vec3 light = mix(of_dielectric, of_metal, at.own.metallic);
-#if SHEEN
-    light = sheen_over(at, light, base.l, h, strength);
-#endif
-#if !CLEARCOAT
-    return light;
-#else
-    vec3 half_way = safe_normalize(coat.l + at.view, at.coat_normal);
-    float lobe_of_coat = facets(at.coat_normal, at.view, coat.l, half_way, at.own.clearcoat_roughness);
-    return coat_mix(light, vec3(strength * coat.gain * at.coat_gain * lobe_of_coat), 1.0, at.coat_share);
-#endif
+    float nl = dot(at.normal, base.l);
+    HalfWay half_ = half_way(base.l, at.view);
+    float lobe = strength * base.gain * facets(at.facets, nl, half_);
+    HalfWay coat_half = half_way(coat.l, at.view);
+    return layers_over(at, vec3(fallen), coat.l, nl, half_, lobe, coat_half, strength, strength * coat.gain * at.coat_gain);
 }
 #endif
 
-/// The light from around that leaves the surface towards the viewer, with what it gives off itself.
-vec3 layered_ambient(Layered at, Around around, vec3 emission) {
-    SplitSum dielectric = split_sum_multi(at.f0, mean_reflectance(at, at.f0), at.dfg);
-    SplitSum metal = split_sum_multi(at.base, mean_reflectance(at, at.base), at.dfg);
-    vec3 below = at.base * around.front;
+/// The layers over the light from around: what the base reflects of it, and what of the light that the
+/// dielectric scatters is taken.
+vec3 around_over(Layered at, Around around, vec3 emission, vec3 reflected, float taken) {
+    vec3 below = at.scattering * around.front;
+#if TRANSMISSION || DIFFUSE_TRANSMISSION
+    below *= at.base;
+#endif
 #if DIFFUSE_TRANSMISSION
-    vec3 behind = at.own.diffuse_transmission_color * passing_share(at) * around.back;
+    vec3 behind = at.scattering * at.own.diffuse_transmission_color * passing_share(at) * around.back;
     below = mix(below, behind, at.own.diffuse_transmission);
 #endif
 #if TRANSMISSION
-    below = mix(below, at.base * passing_share(at) * around.through, at.own.transmission);
+    below = mix(below, at.scattering * at.base * passing_share(at) * around.through, at.own.transmission);
 #endif
-    float taken = at.own.specular * largest_channel(dielectric.single + dielectric.multiple);
-    vec3 of_dielectric = at.own.specular * (dielectric.single * around.mirrored + dielectric.multiple * around.front);
-    vec3 of_metal = metal.single * around.mirrored + metal.multiple * around.front;
-    vec3 light = mix(of_dielectric + below * (1.0 - taken), of_metal, at.own.metallic);
+    vec3 light = reflected + below * (1.0 - taken);
 #if SHEEN
     float scale = sheen_scale(at.own.sheen_color, at.sheen_view, 0.0);
     light = at.own.sheen_color * at.sheen_view * around.front + light * scale;
@@ -473,6 +572,32 @@ vec3 layered_ambient(Layered at, Around around, vec3 emission) {
 #else
     return light;
 #endif
+}
+
+/// The light from around that leaves the surface towards the viewer, with what it gives off itself.
+vec3 layered_ambient(Layered at, Around around, vec3 emission) {
+    SplitSum dielectric = split_sum_multi(at.f0, mean_reflectance(at, at.f0), at.dfg);
+    SplitSum metal = split_sum_multi(at.base, mean_reflectance(at, at.base), at.dfg);
+    float taken = at.own.specular * largest_channel(dielectric.single + dielectric.multiple);
+    float weight = (1.0 - at.own.metallic) * at.own.specular;
+    vec3 once = dielectric.single * weight + metal.single * at.own.metallic;
+    vec3 several = dielectric.multiple * weight + metal.multiple * at.own.metallic;
+    return around_over(at, around, emission, once * around.mirrored + several * around.front, taken);
+}
+
+/// The same where light comes evenly from everywhere: all lobes see the same light, so the mean over all
+/// directions of their reflectance is enough.
+vec3 layered_even(Layered at, vec3 light, vec3 emission) {
+    float weight = (1.0 - at.own.metallic) * at.own.specular + at.own.metallic;
+#if !IRIDESCENCE
+    vec3 f0 = at.blend;
+#else
+    vec3 f0 = mix(at.blend, at.film * weight, at.own.iridescence);
+#endif
+    // The mean of Schlick's approximation, as of `f_average_schlick`, whose other end is the weight.
+    vec3 reflectance = f0 * 0.952380952 + weight * 0.047619048;
+    float taken = at.taken.x + at.taken.y * 0.047619048;
+    return around_over(at, Around(light, light, light, light, light), emission, reflectance * light, taken);
 }
 
 /// The direction that the base mirrors towards the viewer.

@@ -36,10 +36,7 @@ float compare_tap(LAMPLIGHT_DEPTH_MAP(map, smp), vec2 uv, float depth) {
 /// Edges: 1 where `at` is outside.
 /// Error model: that of `compare_tap`.
 float hard(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
-    if (!at.inside) {
-        return 1.0;
-    }
-    return compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), at.uv, at.depth);
+    return at.inside ? textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(at.uv, at.depth), 0.0) : 1.0;
 }
 
 /// The mean of a square grid of comparisons, two texels apart.
@@ -54,13 +51,19 @@ float pcf_grid(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int reach) {
         return 1.0;
     }
     vec2 stride = 2.0 / vec2(textureSize(LAMPLIGHT_DEPTH_SAMPLER(map, smp), 0));
-    float sum = 0.0;
-    for (int y = -reach; y <= reach; y++) {
-        for (int x = -reach; x <= reach; x++) {
-            sum += compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), at.uv + vec2(float(x), float(y)) * stride, at.depth);
-        }
-    }
     float side = float(2 * reach + 1);
+    float sum = 0.0;
+    // The middle is on the map: what is left of it can only be left of the map, and so on.
+    for (int y = -reach; y <= reach; y++) {
+        float v = at.uv.y + float(y) * stride.y;
+        float row = 0.0;
+        for (int x = -reach; x <= reach; x++) {
+            float u = at.uv.x + float(x) * stride.x;
+            float visible = textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(vec2(u, v), at.depth), 0.0);
+            row += x == 0 || (x < 0 ? u >= 0.0 : u <= 1.0) ? visible : 1.0;
+        }
+        sum += y == 0 || (y < 0 ? v >= 0.0 : v <= 1.0) ? row : side;
+    }
     return sum / (side * side);
 }
 
@@ -106,10 +109,13 @@ float pcf_castano_3(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
     vec2 w1 = 1.0 + 2.0 * f;
     vec2 p0 = (centre + (2.0 - f) / w0 - 1.0) / size;
     vec2 p1 = (centre + f / w1 + 1.0) / size;
-    float a = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), p0, at.depth);
-    float b = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(p1.x, p0.y), at.depth);
-    float c = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(p0.x, p1.y), at.depth);
-    float d = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), p1, at.depth);
+    // The point is on the map, so the first of two places can only be before the map, and the other only behind.
+    bvec2 first = greaterThanEqual(p0, vec2(0.0));
+    bvec2 last = lessThanEqual(p1, vec2(1.0));
+    float a = first.x && first.y ? textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(p0, at.depth), 0.0) : 1.0;
+    float b = last.x && first.y ? textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(vec2(p1.x, p0.y), at.depth), 0.0) : 1.0;
+    float c = first.x && last.y ? textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(vec2(p0.x, p1.y), at.depth), 0.0) : 1.0;
+    float d = last.x && last.y ? textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(p1, at.depth), 0.0) : 1.0;
     return (w0.y * (w0.x * a + w1.x * b) + w1.y * (w0.x * c + w1.x * d)) / 16.0;
 }
 
@@ -118,13 +124,13 @@ float pcf_castano_3(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
 /// Parameters: `map`, `smp` depth map and comparison sampler; `columns` the three u coordinates; `v` the row's; `weights` of the columns; `depth` reference, [0, 1].
 /// Returns: the weighted sum, [0, sum of the weights].
 /// Source: as `pcf_castano_5`.
-/// Edges: each comparison of `columns` and `v` beyond the map's edge counts as lit; `weights` are not clamped; `depth` as for `compare_tap`.
+/// Edges: a comparison left of the map counts as lit in the first of the `columns`, and one right of it in the last; `v` beyond the map is at its edge; `weights` are not clamped; `depth` as for `compare_tap`.
 /// Error model: that of `compare_tap`, times the weights.
 float castano_row(LAMPLIGHT_DEPTH_MAP(map, smp), vec3 columns, float v, vec3 weights, float depth) {
-    float left = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(columns.x, v), depth);
-    float middle = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(columns.y, v), depth);
-    float right = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(columns.z, v), depth);
-    return weights.x * left + weights.y * middle + weights.z * right;
+    float left = textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(vec2(columns.x, v), depth), 0.0);
+    float middle = textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(vec2(columns.y, v), depth), 0.0);
+    float right = textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(vec2(columns.z, v), depth), 0.0);
+    return weights.x * (columns.x >= 0.0 ? left : 1.0) + weights.y * middle + weights.z * (columns.z <= 1.0 ? right : 1.0);
 }
 
 /// A bell of 5x5 texels (weights 1, 3, 4, 3, 1) in nine bilinear comparisons.
@@ -149,7 +155,11 @@ float pcf_castano_5(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
     float top = castano_row(LAMPLIGHT_DEPTH_ARG(map, smp), px, py.x, wx, at.depth);
     float middle = castano_row(LAMPLIGHT_DEPTH_ARG(map, smp), px, py.y, wx, at.depth);
     float bottom = castano_row(LAMPLIGHT_DEPTH_ARG(map, smp), px, py.z, wx, at.depth);
-    return (wy.x * top + wy.y * middle + wy.z * bottom) / 144.0;
+    // A row that is off the map counts as lit.
+    float lit = wx.x + wx.y + wx.z;
+    float top_lit = py.x >= 0.0 ? top : lit;
+    float bottom_lit = py.z <= 1.0 ? bottom : lit;
+    return (wy.x * top_lit + wy.y * middle + wy.z * bottom_lit) / 144.0;
 }
 
 /// Sixteen comparisons at random places of a square around the point, averaged.
@@ -157,13 +167,14 @@ float pcf_castano_5(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
 /// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map; `radius` half the square's side, texels; `pixel` framebuffer position, which chooses the places.
 /// Returns: visibility, [0, 1].
 /// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, percentage closer filtering, with the square centred, measured after the division, and an integer hash.
-/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit; a `radius` of 0 compares at the point alone, and a negative one mirrors the square; negative positions of `pixel` count as 0.
+/// Edges: 1 where `at` is outside; near the edge of the map, the square shrinks until all of it is on the map; a `radius` of 0 compares at the point alone, and a negative one mirrors the square; negative positions of `pixel` count as 0.
 /// Error model: that of `compare_tap` + absolute 2^-20; the places are exact to 2^-23 of the radius.
 float pcf_random16(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, float radius, vec2 pixel) {
     if (!at.inside) {
         return 1.0;
     }
-    vec2 reach = radius / vec2(textureSize(LAMPLIGHT_DEPTH_SAMPLER(map, smp), 0));
+    vec2 room = min(at.uv, 1.0 - at.uv);
+    vec2 reach = min(max(radius / vec2(textureSize(LAMPLIGHT_DEPTH_SAMPLER(map, smp), 0)), -room), room);
     uint state = pixel_seed(pixel);
     float sum = 0.0;
     for (int i = 0; i < 16; i++) {
@@ -171,7 +182,7 @@ float pcf_random16(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, float radius, vec
         uint down = hash_pcg(across);
         state = down;
         vec2 r = 2.0 * vec2(unit_float(across), unit_float(down)) - 1.0;
-        sum += compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), at.uv + r * reach, at.depth);
+        sum += textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(at.uv + r * reach, at.depth), 0.0);
     }
     return sum / 16.0;
 }
@@ -206,17 +217,23 @@ float pcf_random16_hpg(LAMPLIGHT_DEPTH_MAP(map, smp), vec4 sc, float min_w, vec2
 /// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map; `count` how many, at least 1; `radius` of the disk, texels; `phi` turn of the disk, any angle, radians: noise times 2*pi hides the pattern.
 /// Returns: visibility, [0, 1].
 /// Source: Vogel, "A Better Way to Construct the Sunflower Head", 1979, as the places of percentage closer filtering.
-/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit; a `count` below 1 counts as 1; a `radius` of 0 compares at the point alone, and a negative one turns the disk by half.
+/// Edges: 1 where `at` is outside; near the edge of the map, the disk shrinks until all of it is on the map; a `count` below 1 counts as 1; a `radius` of 0 compares at the point alone, and a negative one turns the disk by half.
 /// Error model: that of `compare_tap` + absolute count*2^-24; the places have that of `vogel_disk` times the radius.
 float pcf_vogel(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int count, float radius, float phi) {
     if (!at.inside) {
         return 1.0;
     }
     int taps = max(count, 1);
-    vec2 reach = radius / vec2(textureSize(LAMPLIGHT_DEPTH_SAMPLER(map, smp), 0));
+    vec2 room = min(at.uv, 1.0 - at.uv);
+    vec2 reach = min(max(radius / vec2(textureSize(LAMPLIGHT_DEPTH_SAMPLER(map, smp), 0)), -room), room);
+    // The disk does not depend on the point, so compilers compute it. Only its turn is left.
+    float turn = fract(phi * 0.15915494 + 0.5) * 6.2831853 - 3.1415927;
+    vec2 across = vec2(cos(turn), sin(turn)) * reach;
+    vec2 down = vec2(-sin(turn), cos(turn)) * reach;
     float sum = 0.0;
     for (int i = 0; i < taps; i++) {
-        sum += compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), at.uv + vogel_disk(i, taps, phi) * reach, at.depth);
+        vec2 place = vogel_disk(i, taps, 0.0);
+        sum += textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(at.uv + place.x * across + place.y * down, at.depth), 0.0);
     }
     return sum / float(taps);
 }
@@ -230,10 +247,15 @@ float pcf_vogel(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int count, float rad
 /// Error model: absolute 2^-20; a sample counts or not where it is closer to `at.depth` than their errors.
 float mean_blocker(LAMPLIGHT_COLOR_MAP(depths, depths_smp), ShadowUv at, float radius, float phi) {
     vec2 reach = radius / vec2(textureSize(LAMPLIGHT_COLOR_SAMPLER(depths, depths_smp), 0));
+    // The disk does not depend on the point, so compilers compute it. Only its turn is left.
+    float turn = fract(phi * 0.15915494 + 0.5) * 6.2831853 - 3.1415927;
+    vec2 across = vec2(cos(turn), sin(turn)) * reach;
+    vec2 down = vec2(-sin(turn), cos(turn)) * reach;
     float sum = 0.0;
     float found = 0.0;
     for (int i = 0; i < 16; i++) {
-        float d = textureLod(LAMPLIGHT_COLOR_SAMPLER(depths, depths_smp), at.uv + vogel_disk(i, 16, phi) * reach, 0.0).x;
+        vec2 place = vogel_disk(i, 16, 0.0);
+        float d = textureLod(LAMPLIGHT_COLOR_SAMPLER(depths, depths_smp), at.uv + place.x * across + place.y * down, 0.0).x;
         float nearer = d < at.depth ? 1.0 : 0.0;
         sum += nearer * d;
         found += nearer;

@@ -17,10 +17,8 @@
 /// Edges: 0 where `blocker` is not before `receiver`, and where there is none: a `blocker` of 0 or less; a negative `size` counts as 0; never more than 1e6 times the size.
 /// Error model: 3 ULP, and 2^-23*receiver*size/blocker.
 float pcss_width(float receiver, float blocker, float size) {
-    if (!(blocker > 0.0 && receiver > blocker)) {
-        return 0.0;
-    }
-    return max(size, 0.0) * (min(receiver - blocker, 1e6 * blocker) / blocker);
+    float between = max(min(receiver - blocker, 1e6 * blocker), 0.0);
+    return max(size, 0.0) * (between / max(blocker, 1e-30));
 }
 
 /// The width of the penumbra of a distant light.

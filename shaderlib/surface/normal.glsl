@@ -42,13 +42,10 @@ vec3 face_normal(vec3 a, vec3 b, vec3 c) {
 /// Parameters: `n` unit normal; `tangent` unit tangent in `xyz`, the same space, with the bitangent's sign, 1 or -1, in `w`; `texel` value of the normal map, [0, 1] in each channel, where 0.5 stands for 0.
 /// Returns: unit normal, in that space.
 /// Source: Blinn, "Simulation of Wrinkled Surfaces", 1978; the tangent's sign as in Khronos Group, glTF 2.0, "Meshes".
-/// Edges: `n` where `tangent` is zero or along `n`, and for a `texel` of 0.5, 0.5, 0.5, which is not clamped; for a zero `n` only the tangent's part is left.
+/// Edges: `n` where `tangent` is zero or along `n`, with a blue of at least 0.5, and for a `texel` of 0.5, 0.5, 0.5, which is not clamped; for a zero `n` only the tangent's part is left.
 /// Error model: absolute 6*2^-23/(sin(a)*min(|2*texel - 1|, 1)), with a the angle between `n` and the tangent.
 vec3 perturb_normal(vec3 n, vec4 tangent, vec3 texel) {
-    vec3 t = safe_normalize(tangent.xyz - n * dot(n, tangent.xyz), vec3(0.0));
-    if (dot(t, t) == 0.0) {
-        return n;
-    }
+    vec3 t = normalize_or_zero(tangent.xyz - n * dot(n, tangent.xyz));
     vec3 b = cross(n, t) * tangent.w;
     vec3 bent = 2.0 * texel - 1.0;
     return safe_normalize(t * bent.x + b * bent.y + n * bent.z, n);

@@ -20,9 +20,9 @@ pub const REFERENCES: ReferenceEntry = ReferenceEntry {
         ("pcf_castano_3", |a| averaged(a, |_, _| bell(&[1.0, 2.0, 1.0], 1.0))),
         ("castano_row", castano_row),
         ("pcf_castano_5", |a| averaged(a, |_, _| bell(&[1.0, 3.0, 4.0, 3.0, 1.0], 1.0))),
-        ("pcf_random16", |a| averaged(a, random16)),
+        ("pcf_random16", |a| shrunk(a, random16)),
         ("pcf_random16_hpg", random16_hpg),
-        ("pcf_vogel", |a| averaged(a, |a, _| disk(a.f64(), a.f64(), a.f64()))),
+        ("pcf_vogel", |a| shrunk(a, vogel)),
         ("mean_blocker", mean_blocker),
         ("pcss", pcss),
         ("cube_compare", cube_compare),
@@ -91,14 +91,43 @@ fn bell(weights: &[f64], step: f64) -> Taps {
 
 /// Sixteen random offsets in the square of half side `radius`, by a chain of hashes that starts
 /// with the seed of the pixel.
-fn random16(a: &mut CallArguments<'_>, _: &At) -> Taps {
+fn random16(a: &mut CallArguments<'_>) -> (f64, Taps) {
     let (radius, pixel) = (a.f64(), a.vec2());
     let mut state = pixel_seed(pixel);
     let mut next = || {
         state = hash(state);
         2.0 * unit(state) - 1.0
     };
-    (0..16).map(|_| (1.0, radius * DVec2::new(next(), next()))).collect()
+    (radius, (0..16).map(|_| (1.0, radius * DVec2::new(next(), next()))).collect())
+}
+
+fn vogel(a: &mut CallArguments<'_>) -> (f64, Taps) {
+    let (count, radius, phi) = (a.f64(), a.f64(), a.f64());
+    (radius, disk(count, radius, phi))
+}
+
+/// The mean over taps that reach up to a radius in each direction, or to the nearer edge of the map.
+fn shrunk(
+    a: &mut CallArguments<'_>,
+    taps: fn(&mut CallArguments<'_>) -> (f64, Taps),
+) -> Expected {
+    let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
+    let at = At::read(a);
+    let (radius, taps) = taps(a);
+    if at.inside { shrunk_mean(map, sampler, at, radius, taps).into() } else { 1.0.into() }
+}
+
+fn shrunk_mean(
+    map: &FixtureTexture,
+    sampler: FixtureSampler,
+    at: At,
+    radius: f64,
+    taps: Taps,
+) -> f64 {
+    let room = at.uv.min(1.0 - at.uv) * size(map);
+    let share = (room / radius.abs().max(1e-30)).min(DVec2::ONE);
+    let taps = taps.into_iter().map(|(weight, offset)| (weight, offset * share)).collect();
+    mean(map, sampler, at, &taps)
 }
 
 /// The mean of sixteen comparisons at random places to the right and below, up to a quarter of the
@@ -131,8 +160,12 @@ fn disk(count: f64, radius: f64, phi: f64) -> Taps {
 fn castano_row(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (columns, v, weights, depth) = (a.vec3(), a.f64(), a.vec3(), a.f64());
-    let tap = |i: usize| weights[i] * compare(map, sampler, DVec2::new(columns[i], v), depth);
-    (0..3).map(tap).sum::<f64>().into()
+    let is_off = |i: usize| (i == 0 && columns.x < 0.0) || (i == 2 && columns.z > 1.0);
+    let visible = |i: usize| match is_off(i) {
+        true => 1.0,
+        false => sampling::compare_depth(map, sampler, DVec2::new(columns[i], v), depth),
+    };
+    (0..3).map(|i| weights[i] * visible(i)).sum::<f64>().into()
 }
 
 /// The distinct depths that a sample may read if its place is off by up to so many texels.
@@ -200,7 +233,8 @@ fn pcss(a: &mut CallArguments<'_>) -> Expected {
             return 1.0;
         }
         let penumbra = (at.depth - blocker) * light / blocker.max(0.001);
-        mean(map, sampler, at, &disk(16.0, penumbra.clamp(1.0, light), phi))
+        let radius = penumbra.clamp(1.0, light);
+        shrunk_mean(map, sampler, at, radius, disk(16.0, radius, phi))
     };
     one_of(blockers(depths, plain, at, light, phi).into_iter().map(visible))
 }
