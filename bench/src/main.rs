@@ -8,6 +8,7 @@ mod bundle;
 mod compose;
 mod corpus;
 mod eval;
+mod forward;
 mod generate;
 mod library;
 mod load;

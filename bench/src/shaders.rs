@@ -1,5 +1,6 @@
-//! What functions cost beside their published formulas without guards, and, with a folder, functions
-//! and whole shaders beside those of peers. All ratios are of one run: cycles of vector instructions
+//! What functions cost beside their published formulas without guards, what permutations of `forward`
+//! cost beside recorded figures of peers, and, with a folder, functions and whole shaders beside those
+//! of peers. All ratios are of one run: cycles of vector instructions
 //! along the dearest path on one GPU, as Mesa's driver compiles for it.
 //!
 //! Each folder within the folder of peers is a peer. It is laid out as `tests/plain/`: a module such
@@ -15,29 +16,48 @@ use lamplight::project;
 use lamplight::source::SourceSet;
 use serde_json::Value;
 
-use crate::Outcome;
+use crate::{Outcome, forward};
 
-type Cycles = BTreeMap<String, i64>;
+pub type Cycles = BTreeMap<String, i64>;
 
-type Measured<T> = Result<T, Box<dyn std::error::Error>>;
+pub type Measured<T> = Result<T, Box<dyn std::error::Error>>;
 
 const GPU: &str = "navi21";
 
 /// The row of a function or a permutation: its name, its cycles, and those of the other one.
-type Row = (String, i64, i64);
+pub type Row = (String, i64, i64);
 
 /// Prints the ratios, the worst first.
 pub fn run() -> Outcome {
     let plain = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/plain");
     let (driver, library) = cycles_of(Path::new("."), &[])?;
     println!("cycles on {GPU}, an AMD GPU, compiled by {driver}\n");
-    print_rows("formulas without guards", paired(&library, &module_cycles(&plain)?));
+    let rows = paired(&library, &module_cycles(&plain)?);
+    let (fast, guarded): (Vec<Row>, Vec<Row>) =
+        rows.into_iter().partition(|(name, _, _)| name.ends_with("_fast"));
+    print_rows("formulas without guards", guarded);
+    print_rows("the same formulas, forms without guards", fast);
+    print_forward()?;
     let Some(folder) = std::env::args().nth(2) else { return Ok(()) };
     for peer in folders_of(Path::new(&folder))? {
         let name = peer.file_name().unwrap_or_default().to_string_lossy().into_owned();
         print_rows(&format!("functions of {name}"), paired(&library, &module_cycles(&peer)?));
         print_rows(&format!("shaders of {name}"), program_rows(&peer)?);
     }
+    Ok(())
+}
+
+/// The permutations of `forward` that peers were measured for.
+fn print_forward() -> Outcome {
+    let keys = forward::keys();
+    let arguments: Vec<&str> =
+        ["--program", "forward"].into_iter().chain(keys.iter().map(String::as_str)).collect();
+    let (_, cycles) = cycles_of(Path::new("."), &arguments)?;
+    print_rows("recorded shaders of peers", forward::rows(&cycles)?);
+    for (name, cycles) in forward::further_lamps(&cycles) {
+        println!("{cycles:6} cycles for {name}");
+    }
+    println!();
     Ok(())
 }
 
