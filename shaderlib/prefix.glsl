@@ -40,6 +40,7 @@
 #define blend_udn(p0, p1) lamplight_blend_udn(p0, p1)
 #define blend_whiteout(p0, p1) lamplight_blend_whiteout(p0, p1)
 #define blinn_phong(p0, p1, p2, p3) lamplight_blinn_phong(p0, p1, p2, p3)
+#define blinn_phong_fast(p0, p1, p2, p3) lamplight_blinn_phong_fast(p0, p1, p2, p3)
 #define blinn_phong_half(p0, p1, p2, p3) lamplight_blinn_phong_half(p0, p1, p2, p3)
 #define blinn_phong_hpg(p0, p1, p2, p3) lamplight_blinn_phong_hpg(p0, p1, p2, p3)
 #define blinn_phong_normalized(p0, p1, p2, p3) lamplight_blinn_phong_normalized(p0, p1, p2, p3)
@@ -132,6 +133,7 @@
 #define fog_exp2(p0, p1) lamplight_fog_exp2(p0, p1)
 #define fog_height(p0, p1, p2, p3, p4, p5) lamplight_fog_height(p0, p1, p2, p3, p4, p5)
 #define fog_linear(p0, p1, p2) lamplight_fog_linear(p0, p1, p2)
+#define fog_scale_offset(p0, p1, p2) lamplight_fog_scale_offset(p0, p1, p2)
 #define fog_transmittance(p0) lamplight_fog_transmittance(p0)
 #define gaussian21(p0) lamplight_gaussian21(p0)
 #define geomerics_channel(p0, p1, p2) lamplight_geomerics_channel(p0, p1, p2)
@@ -222,6 +224,7 @@
 #define pcss_width_directional(p0, p1, p2) lamplight_pcss_width_directional(p0, p1, p2)
 #define perturb_normal(p0, p1, p2) lamplight_perturb_normal(p0, p1, p2)
 #define phong(p0, p1, p2, p3) lamplight_phong(p0, p1, p2, p3)
+#define phong_fast(p0, p1, p2, p3) lamplight_phong_fast(p0, p1, p2, p3)
 #define phong_igl(p0, p1, p2, p3) lamplight_phong_igl(p0, p1, p2, p3)
 #define phong_oglpg_7_21(p0, p1, p2, p3) lamplight_phong_oglpg_7_21(p0, p1, p2, p3)
 #define pixel_seed(p0) lamplight_pixel_seed(p0)
@@ -301,12 +304,15 @@
 #define v_charlie(p0, p1, p2) lamplight_v_charlie(p0, p1, p2)
 #define v_kelemen(p0) lamplight_v_kelemen(p0)
 #define v_neubelt(p0, p1) lamplight_v_neubelt(p0, p1)
+#define v_neubelt_fast(p0, p1) lamplight_v_neubelt_fast(p0, p1)
 #define v_smith_ggx(p0, p1, p2) lamplight_v_smith_ggx(p0, p1, p2)
 #define v_smith_ggx_aniso(p0, p1, p2, p3, p4, p5, p6, p7) lamplight_v_smith_ggx_aniso(p0, p1, p2, p3, p4, p5, p6, p7)
+#define v_smith_ggx_fast(p0, p1, p2) lamplight_v_smith_ggx_fast(p0, p1, p2)
 #define view_infinite() lamplight_view_infinite()
 #define view_local(p0) lamplight_view_local(p0)
 #define vogel_disk(p0, p1, p2) lamplight_vogel_disk(p0, p1, p2)
 #define volume_transmittance(p0, p1, p2) lamplight_volume_transmittance(p0, p1, p2)
+#define volume_transmittance_fast(p0, p1, p2) lamplight_volume_transmittance_fast(p0, p1, p2)
 #define vsm_moments(p0) lamplight_vsm_moments(p0)
 #define vsm_moments_slope(p0, p1, p2) lamplight_vsm_moments_slope(p0, p1, p2)
 #define vsm_visibility(p0, p1, p2, p3, p4) lamplight_vsm_visibility(p0, p1, p2, p3, p4)
@@ -349,6 +355,7 @@
 #undef blend_udn
 #undef blend_whiteout
 #undef blinn_phong
+#undef blinn_phong_fast
 #undef blinn_phong_half
 #undef blinn_phong_hpg
 #undef blinn_phong_normalized
@@ -441,6 +448,7 @@
 #undef fog_exp2
 #undef fog_height
 #undef fog_linear
+#undef fog_scale_offset
 #undef fog_transmittance
 #undef gaussian21
 #undef geomerics_channel
@@ -531,6 +539,7 @@
 #undef pcss_width_directional
 #undef perturb_normal
 #undef phong
+#undef phong_fast
 #undef phong_igl
 #undef phong_oglpg_7_21
 #undef pixel_seed
@@ -610,12 +619,15 @@
 #undef v_charlie
 #undef v_kelemen
 #undef v_neubelt
+#undef v_neubelt_fast
 #undef v_smith_ggx
 #undef v_smith_ggx_aniso
+#undef v_smith_ggx_fast
 #undef view_infinite
 #undef view_local
 #undef vogel_disk
 #undef volume_transmittance
+#undef volume_transmittance_fast
 #undef vsm_moments
 #undef vsm_moments_slope
 #undef vsm_visibility

@@ -151,6 +151,17 @@ float sheen_ltc_lobe(vec3 t, vec3 w) {
     return max(wo.z, 0.0) * 0.31830989 * (t.x / size2) * (t.x / size2);
 }
 
+/// `v_neubelt` without guards.
+///
+/// Parameters: `nl`, `nv` cosines n.l and n.v, at least 0, not both 0, up to 1.
+/// Returns: as `v_neubelt`.
+/// Source: as `v_neubelt`.
+/// Edges: only for an `nl` and an `nv` in [0, 1], of which one is above 0: elsewhere it may be negative, or divide by zero.
+/// Error model: that of `v_neubelt`.
+float v_neubelt_fast(float nl, float nv) {
+    return 0.25 / (nl + nv - nl * nv);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

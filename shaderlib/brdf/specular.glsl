@@ -152,6 +152,42 @@ vec3 f_schlick(vec3 f0, float f90, float vh) {
     return f0 + (vec3(f90) - f0) * (x2 * x2 * x);
 }
 
+/// `v_smith_ggx` without guards, for callers that have them: a lobe is multiplied by n.l, and leaves out what is behind.
+///
+/// Parameters: `nv`, `nl` cosines n.v and n.l, above 0, up to 1; `alpha` squared perceptual roughness, [0, 1].
+/// Returns: as `v_smith_ggx`.
+/// Source: as `v_smith_ggx`.
+/// Edges: only for an `nv` and an `nl` above 1e-18 and an `alpha` in [0, 1]: elsewhere it may divide by zero, or take the root of a negative number.
+/// Error model: that of `v_smith_ggx`.
+float v_smith_ggx_fast(float nv, float nl, float alpha) {
+    float a2 = alpha * alpha;
+    float from_view = nl * sqrt(nv * nv * (1.0 - a2) + a2);
+    float from_light = nv * sqrt(nl * nl * (1.0 - a2) + a2);
+    return 0.5 / (from_view + from_light);
+}
+
+/// `phong` without guards, as most engines have it.
+///
+/// Parameters: `n`, `l`, `v` unit, one space, `l` and `v` away from the surface; `s` shininess, above 0.
+/// Returns: `max(r.v, 0)^s` with `r = reflect(-l, n)`: also where the light is behind the surface, so multiply it by n.l or by a test of it.
+/// Source: as `phong`.
+/// Edges: 0 for a zero `v`, and for a zero `l`; r is `-l` for a zero `n`; indeterminate for an `s` of 0 or below with r.v at or below 0.
+/// Error model: that of `phong`.
+float phong_fast(vec3 n, vec3 l, vec3 v, float s) {
+    return pow(max(dot(reflect(-l, n), v), 0.0), s);
+}
+
+/// `blinn_phong` without guards, as most engines have it.
+///
+/// Parameters: `n`, `l`, `v` unit, one space, `l` and `v` away from the surface; `s` shininess, above 0.
+/// Returns: `max(n.h, 0)^s` with `h = normalize(l + v)`: also where the light is behind the surface, so multiply it by n.l or by a test of it.
+/// Source: as `blinn_phong`.
+/// Edges: 0 for a zero `n`; indeterminate where `l = -v`, and for an `s` of 0 or below with n.h at or below 0; the half vector of a zero `v` is `l`.
+/// Error model: that of `blinn_phong`.
+float blinn_phong_fast(vec3 n, vec3 l, vec3 v, float s) {
+    return pow(max(dot(n, normalize(l + v)), 0.0), s);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

@@ -219,6 +219,17 @@ vec3 nits_from_ictcp(vec3 c) {
     return max(rgb, vec3(0.0));
 }
 
+/// `fog_linear` with its division done on the host.
+///
+/// Parameters: `d` distance to the viewer, scene units; `scale` `-1/(end - start)`, 1/scene units; `offset` `end/(end - start)`.
+/// Returns: `clamp(d*scale + offset, 0, 1)`: 1 is clear, 0 all fog.
+/// Source: as `fog_linear`.
+/// Edges: the result is clamped to [0, 1], whatever `d`, `scale` and `offset` are.
+/// Error model: absolute 2^-23*(|d*scale| + |offset|).
+float fog_scale_offset(float d, float scale, float offset) {
+    return clamp(d * scale + offset, 0.0, 1.0);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

@@ -211,7 +211,13 @@ float area_alpha(float alpha, float radius, float d) {
 /// Edges: 1 where `wide` is not larger than `alpha`; 0 for an `alpha` of 0 or less that was widened.
 /// Error model: 6 ULP.
 float area_energy(float alpha, float wide) {
-    float ratio = max((alpha + SMALLEST_NORMAL) / (max(wide, alpha) + SMALLEST_NORMAL), 0.0);
+    if (!(wide > alpha)) {
+        return 1.0;
+    }
+    if (!(alpha > 0.0)) {
+        return 0.0;
+    }
+    float ratio = alpha / wide;
     return ratio * ratio;
 }
 

@@ -19,7 +19,7 @@ const float SMALLEST_NORMAL = 1.1754944e-38;
 /// Returns: a vector of length 1 in the space of `v`, or `fallback`.
 /// Source: WGSL specification, "normalize": the result is indeterminate for a zero vector.
 /// Edges: `fallback` where the squared length is below 2^-126 or above 3e38: for lengths below 1.1e-19 (zero included) and above 1.7e19 (infinity included).
-/// Error model: 2 ULP (inverse square root) + 2 ULP (sum of squares) + 0.5 ULP per component.
+/// Error model: 2 ULP (inverse square root) + 2 ULP (sum of squares) + 0.5 ULP per component; relative 2^-125/|v|^2 more where a device takes squares below 2^-126 for 0, which shows in vectors shorter than 1e-15.
 vec3 safe_normalize(vec3 v, vec3 fallback) {
     float size2 = dot(v, v);
     return size2 >= SMALLEST_NORMAL && size2 <= 3e38 ? v * inversesqrt(size2) : fallback;

@@ -18,6 +18,7 @@ pub const REFERENCES: ReferenceEntry = ReferenceEntry {
         ("sheen_scale", sheen_scale),
         ("sheen_ltc", |a| ltc(a.f64(), a.f64())),
         ("sheen_ltc_lobe", |a| ltc_lobe(a.vec3(), a.vec3()).into()),
+        ("v_neubelt_fast", v_neubelt),
     ],
 };
 

@@ -20,6 +20,11 @@ pub const REFERENCES: ReferenceEntry = ReferenceEntry {
         ("d_ggx", d_ggx),
         ("v_smith_ggx", v_smith_ggx),
         ("f_schlick", f_schlick),
+        ("v_smith_ggx_fast", v_smith_ggx),
+        ("phong_fast", |a| phong_fast(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
+        ("blinn_phong_fast", |a| {
+            blinn_phong_fast(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()
+        }),
     ],
 };
 
@@ -87,4 +92,12 @@ fn v_smith_ggx(a: &mut CallArguments<'_>) -> Expected {
 fn f_schlick(a: &mut CallArguments<'_>) -> Expected {
     let (f0, f90, vh) = (a.vec3(), a.f64(), a.f64());
     (f0 + (f90 - f0) * (1.0 - vh.clamp(0.0, 1.0)).powi(5)).into()
+}
+
+fn phong_fast(n: DVec3, l: DVec3, v: DVec3, s: f64) -> f64 {
+    safe_pow(mirrored(n, l).dot(v), s)
+}
+
+fn blinn_phong_fast(n: DVec3, l: DVec3, v: DVec3, s: f64) -> f64 {
+    safe_pow(n.dot((l + v).normalize_or_zero()), s)
 }

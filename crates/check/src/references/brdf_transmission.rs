@@ -16,6 +16,7 @@ pub const REFERENCES: ReferenceEntry = ReferenceEntry {
         ("btdf_thin", btdf_thin),
         ("dispersion_ior", dispersion_ior),
         ("btdf_volume", btdf_volume),
+        ("volume_transmittance_fast", volume_transmittance),
     ],
 };
 

@@ -23,6 +23,7 @@ pub const REFERENCES: ReferenceEntry = ReferenceEntry {
         ("fog_linear", |a| fog_linear(a.f64(), a.f64(), a.f64()).into()),
         ("fog_exp", |a| (-(a.f64() * a.f64()).max(0.0)).exp().into()),
         ("fog_exp2", |a| (-(a.f64() * a.f64()).powi(2)).exp().into()),
+        ("fog_scale_offset", |a| (a.f64() * a.f64() + a.f64()).clamp(0.0, 1.0).into()),
     ],
 };
 
