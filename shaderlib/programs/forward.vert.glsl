@@ -11,6 +11,9 @@
 #include "../surface/normal.glsl"
 #endif
 #include "forward.glsl"
+#if FREQUENCY == FREQUENCY_VERTEX && SPECULAR == SPECULAR_GGX && !METALLIC_ROUGHNESS
+#include "layers.glsl"
+#endif
 
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
@@ -94,6 +97,9 @@ void main() {
     surface.material = materials.items[in_material];
 #else
     surface.material = materials.items[0];
+#endif
+#if SPECULAR == SPECULAR_GGX && !METALLIC_ROUGHNESS
+    surface.facets = facets_of(surface.normal, surface.view, surface.material.roughness);
 #endif
     Accum sum = lit(surface);
     out_scattered = sum.scattered;
