@@ -107,10 +107,7 @@ fn vogel(a: &mut CallArguments<'_>) -> (f64, Taps) {
 }
 
 /// The mean over taps that reach up to a radius in each direction, or to the nearer edge of the map.
-fn shrunk(
-    a: &mut CallArguments<'_>,
-    taps: fn(&mut CallArguments<'_>) -> (f64, Taps),
-) -> Expected {
+fn shrunk(a: &mut CallArguments<'_>, taps: fn(&mut CallArguments<'_>) -> (f64, Taps)) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let at = At::read(a);
     let (radius, taps) = taps(a);
