@@ -221,7 +221,7 @@ vec3 nits_from_ictcp(vec3 c) {
 
 /// `fog_linear` with its division done on the host.
 ///
-/// Parameters: `d` distance to the viewer, scene units; `scale` `-1/(end - start)`, 1/scene units; `offset` `end/(end - start)`.
+/// Parameters: `d` distance to the viewer, scene units; `scale` factor of the distance, `-1/(end - start)`, 1/scene units; `offset` what is added, `end/(end - start)`.
 /// Returns: `clamp(d*scale + offset, 0, 1)`: 1 is clear, 0 all fog.
 /// Source: as `fog_linear`.
 /// Edges: the result is clamped to [0, 1], whatever `d`, `scale` and `offset` are.

@@ -589,13 +589,12 @@ vec3 layered_ambient(Layered at, Around around, vec3 emission) {
 /// directions of their reflectance is enough.
 vec3 layered_even(Layered at, vec3 light, vec3 emission) {
     float weight = (1.0 - at.own.metallic) * at.own.specular + at.own.metallic;
-#if !IRIDESCENCE
-    vec3 f0 = at.blend;
-#else
-    vec3 f0 = mix(at.blend, at.film * weight, at.own.iridescence);
-#endif
     // The mean of Schlick's approximation, as of `f_average_schlick`, whose other end is the weight.
-    vec3 reflectance = f0 * 0.952380952 + weight * 0.047619048;
+    vec3 reflectance = at.blend * 0.952380952 + weight * 0.047619048;
+#if IRIDESCENCE
+    // A film does not reflect more towards the horizon than it does at the viewer's angle.
+    reflectance = mix(reflectance, at.film * weight, at.own.iridescence);
+#endif
     float taken = at.taken.x + at.taken.y * 0.047619048;
     return around_over(at, Around(light, light, light, light, light), emission, reflectance * light, taken);
 }
