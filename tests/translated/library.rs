@@ -2,6 +2,8 @@
 //! numeric cases hold.
 
 use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Command;
 use std::sync::Mutex;
 
 use lamplight::LIBRARY_FILES;
@@ -17,6 +19,7 @@ use lamplight::source::SourceSet;
 use lamplight_translate::print::Dialect;
 use libtest_mimic::{Failed, Trial};
 
+use crate::examples::run;
 use crate::is_whole;
 
 /// Functions with cases that must have been run in each language, at night and by day.
@@ -32,7 +35,43 @@ pub fn tests() -> Vec<Trial> {
                 .map_err(Failed::from)
         })
     };
-    vec![test(Dialect::Hlsl, "hlsl", Target::HLSL), test(Dialect::Msl, "msl", Target::MSL)]
+    vec![
+        test(Dialect::Hlsl, "hlsl", Target::HLSL),
+        test(Dialect::Msl, "msl", Target::MSL),
+        Trial::test("translated::library::exported", exported),
+    ]
+}
+
+/// `lamplight export` writes the same files, and a compiler of HLSL finds what each of them includes.
+fn exported() -> Result<(), Failed> {
+    for (form, dialect) in [("hlsl", Dialect::Hlsl), ("metal", Dialect::Msl)] {
+        let folder = tempfile::tempdir()?;
+        run(Command::new(env!("CARGO_BIN_EXE_lamplight"))
+            .args(["export", "--form", form])
+            .arg(folder.path()))?;
+        let package = folder.path().join("lamplight");
+        let files = module_files(&LIBRARY_FILES, dialect, &mut SourceSet::default())
+            .map_err(|problems| format!("{problems:?}"))?;
+        for (path, text) in &files {
+            assert_eq!(&std::fs::read_to_string(package.join(path))?, text, "{path}");
+            if dialect == Dialect::Hlsl {
+                is_read(&package, path)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Compiles a stage that includes a file.
+fn is_read(package: &Path, path: &str) -> Result<(), Failed> {
+    let stage = package.join("stage.hlsl");
+    let text = format!(
+        "#extension GL_GOOGLE_include_directive : enable\n#include \"{path}\"\n\
+         float4 main() : SV_Target {{ return float4(0.0, 0.0, 0.0, 1.0); }}\n"
+    );
+    std::fs::write(&stage, text)?;
+    let arguments = ["-D", "-V", "--quiet", "-S", "frag", "-e", "main", "-o", "stage.spv"];
+    run(Command::new("glslangValidator").args(arguments).arg(&stage).current_dir(package)).map(drop)
 }
 
 fn checked(dialect: Dialect, name: &'static str, target: Target) -> Result<(), String> {

@@ -59,6 +59,9 @@ fn print_table(
     let weight = |cause: &Cause| cause.share.or(cause.slope).unwrap_or(0.0).abs();
     inputs.sort_by(|one, other| weight(other).total_cmp(&weight(one)));
     writeln!(out, "\ninputs")?;
+    if inputs.is_empty() {
+        writeln!(out, "         none: every number that it was made of is in the text")?;
+    }
     for cause in inputs {
         writeln!(out, "       {}", cause_text(cause))?;
     }
