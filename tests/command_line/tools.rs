@@ -147,6 +147,8 @@ fn examples() -> Outcome {
     let lamp =
         "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(1.0); }\n";
     std::fs::write(package.path("lamp.frag"), lamp)?;
+    let function = "fn fade(d: f32) -> f32 {\n    return 1.0 / (1.0 + d * d);\n}\n";
+    std::fs::write(package.path("lamp.wesl"), function)?;
     let help = package.run("--help")?.ends(0)?.out;
     let commands: Vec<&str> = help
         .lines()
