@@ -189,7 +189,7 @@ pub fn reason() -> Outcome {
     }
     for (name, rest, expected) in [
         ("brdf::diffuse::unheard_of", &[why][..], "has no `fn unheard_of(`"),
-        ("lighting::area::any_tangent", &[why], "already"),
+        ("lighting::cluster::cluster_slice", &[why], "already"),
         ("brdf::diffuse::wrap", &[], "name a function and say why"),
     ] {
         let made = made::make(&root(), "reason", name, rest);
