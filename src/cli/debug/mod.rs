@@ -54,7 +54,7 @@ const ABOUT_FILES: [&str; 9] = [
     "beside",
     "output",
     "samples",
-    "overwrite",
+    "force",
     "watch",
     "terminal",
     "exposure",
