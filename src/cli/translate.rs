@@ -14,7 +14,7 @@ use super::input::InputArguments;
 use super::terminal::write_data;
 use crate::bundle::{Language, SourceClip};
 use crate::compose::Composed;
-use crate::diagnostic::{Diagnostics, Label, codes};
+use crate::diagnostic::{Diagnostics, codes};
 use crate::generate::add_numbers;
 use crate::glsl::wgsl::{Clip, Written};
 use crate::source::{SourceId, SourceSet};
@@ -128,21 +128,11 @@ fn printed(
     let module = SourceModule { path: vec![name.to_owned()], source: COMPOSED, text: &wgsl.text };
     match on_large_stack(|| translate_wesl(&[module], &[], &style)) {
         Ok(files) => Ok((files.into_iter().map(|file| file.text).collect(), warnings)),
-        Err(problems) => Err(in_authors_text(problems, wgsl)),
+        Err(mut problems) => {
+            problems.iter_mut().for_each(|problem| wgsl.map.move_labels(problem));
+            Err(problems)
+        }
     }
-}
-
-/// Places in the composed text as places in the author's.
-fn in_authors_text(mut problems: Diagnostics, composed: &Composed) -> Diagnostics {
-    for problem in &mut problems {
-        let labels = std::mem::take(&mut problem.labels);
-        let moved = labels.into_iter().filter_map(|label| {
-            let span = composed.map.lookup(label.span.range())?;
-            Some(Label { span, message: label.message })
-        });
-        problem.labels = moved.collect();
-    }
-    problems
 }
 
 /// What is written is valid, or the translator is wrong. Features that only some targets have, such

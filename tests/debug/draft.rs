@@ -5,40 +5,26 @@
 
 use std::fmt::Write as _;
 
+use crate::random::Random;
+
 /// How many values a run notes at most.
 pub const NOTES: u32 = 160;
 
-/// A generator of numbers.
-struct Dice(u32);
-
-impl Dice {
-    fn roll(&mut self, sides: u32) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        (self.0 >> 3) % sides
-    }
-
-    fn pick(&mut self, options: &[&str]) -> String {
-        options[self.roll(options.len() as u32) as usize].to_owned()
-    }
-}
-
 struct Draft {
-    dice: Dice,
+    random: Random,
     /// How deep blocks may nest from here.
     depth: u32,
     loops: u32,
     /// Functions that may be called.
-    callees: u32,
+    callees: usize,
     inside: u32,
 }
 
 /// The text of a program whose function `f(given_x, given_y, given_i, index)` returns the value that
 /// was noted at an index, or how many there are.
 pub fn draft_program(seed: u32) -> String {
-    let dice = Dice(seed.wrapping_mul(2_654_435_761) | 1);
-    let mut draft = Draft { dice, depth: 2, loops: 0, callees: 0, inside: 0 };
+    let random = Random(u64::from(seed));
+    let mut draft = Draft { random, depth: 2, loops: 0, callees: 0, inside: 0 };
     let mut text = format!(
         "var<private> noted: array<f32, {NOTES}>;\n\
          var<private> count: u32;\n\
@@ -73,14 +59,19 @@ pub fn draft_program(seed: u32) -> String {
 }
 
 impl Draft {
+    fn picked(&mut self, options: &[&str]) -> String {
+        (*self.random.pick(options)).to_owned()
+    }
+
     fn number(&mut self) -> String {
-        self.dice
-            .pick(&["x", "y", "v.x", "v[i & 1]", "a[i & 1]", "f32(i)", "p.low", "p.high.y", "0.75"])
+        self.picked(&[
+            "x", "y", "v.x", "v[i & 1]", "a[i & 1]", "f32(i)", "p.low", "p.high.y", "0.75",
+        ])
     }
 
     fn value(&mut self) -> String {
         let (a, b, c) = (self.number(), self.number(), self.number());
-        match self.dice.roll(16) {
+        match self.random.below(16) {
             0 => format!("{a} + {b}"),
             1 => format!("{a} - {b}"),
             2 => format!("{a} * {b}"),
@@ -103,12 +94,12 @@ impl Draft {
         if self.callees == 0 {
             return self.number();
         }
-        let callee = self.dice.roll(self.callees);
+        let callee = self.random.below(self.callees);
         format!("helper_{callee}({}, &y, i)", self.number())
     }
 
     fn whole(&mut self) -> String {
-        self.dice.pick(&[
+        self.picked(&[
             "(i + 1) & 7",
             "(i * 3 - 2) & 7",
             "i32(clamp(x, -5.0, 5.0))",
@@ -123,7 +114,7 @@ impl Draft {
 
     fn condition(&mut self) -> String {
         let (a, b) = (self.number(), self.number());
-        match self.dice.roll(4) {
+        match self.random.below(4) {
             0 => format!("{a} < {b}"),
             1 => format!("{a} >= {b}"),
             2 => "i > 1".to_owned(),
@@ -133,7 +124,7 @@ impl Draft {
 
     fn block(&mut self) -> String {
         self.depth -= 1;
-        let count = 1 + self.dice.roll(3);
+        let count = 1 + self.random.below(3);
         let block = (0..count).map(|_| self.statement()).collect();
         self.depth += 1;
         block
@@ -141,7 +132,7 @@ impl Draft {
 
     fn statement(&mut self) -> String {
         let sides = if self.depth == 0 { 7 } else { 11 };
-        let roll = self.dice.roll(sides);
+        let roll = self.random.below(sides);
         match roll {
             0 => format!("x = exact({});\nnote(x);\n", self.value()),
             1 => format!("y = exact({});\nnote(y);\n", self.value()),
@@ -176,7 +167,7 @@ impl Draft {
         self.inside += 1;
         let block = self.block();
         self.inside -= 1;
-        let most = 1 + self.dice.roll(3);
+        let most = 1 + self.random.below(3);
         format!("for (var {name} = 0; {name} < {most}; {name}++) {{\n{block}}}\n")
     }
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use lamplight_diagnostic::source::Span;
+use lamplight_diagnostic::{Diagnostic, Label};
 
 /// A run of output bytes copied from one place, or standing in for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +32,17 @@ impl SourceMap {
     /// Whether nothing of the output has a place.
     pub fn is_empty(&self) -> bool {
         self.segments.is_empty()
+    }
+
+    /// Moves the labels of a problem from the output to the authors' texts. Labels of what has no
+    /// author go.
+    pub fn move_labels(&self, problem: &mut Diagnostic) {
+        let labels = std::mem::take(&mut problem.labels);
+        let moved = labels.into_iter().filter_map(|label| {
+            let span = self.lookup(label.span.range())?;
+            Some(Label { span, message: label.message })
+        });
+        problem.labels = moved.collect();
     }
 
     /// The author's span for a range of the output, if its first byte has an author.

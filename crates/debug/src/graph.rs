@@ -17,10 +17,10 @@ use crate::walk::Walk;
 /// Index of a node.
 pub type NodeId = usize;
 
-/// The most ways of calls that are told apart. Further calls of a function are one.
+/// The most call paths that have nodes of their own. Calls beyond it share those of their function.
 const MOST_PATHS: usize = 4096;
 
-/// A statement as it is reached by one way of calls, or an input.
+/// A statement as it is reached by one call path, or an input.
 #[derive(Debug, Clone)]
 pub struct Node {
     /// What it is.
@@ -90,7 +90,7 @@ impl Nodes {
         self.nodes.get(&own).copied()
     }
 
-    /// The way of calls to the frame after those that are known.
+    /// The call path to the frame after those that are known.
     fn next_path(&mut self, walk: &Walk<'_>) -> usize {
         let Some(caller) = self.frames.len().checked_sub(1) else { return 0 };
         let from = (self.frames[caller], walk.frames[caller].statement);

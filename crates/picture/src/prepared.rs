@@ -78,17 +78,30 @@ impl PreparedPass {
         size: [u32; 2],
         fragment: Option<(EntryPoint<'_>, u32)>,
     ) -> Result<Vec<Frame>, Diagnostics> {
-        let items: Vec<DrawItem<'_>> =
-            self.items.iter().map(|(mesh, buffers)| DrawItem { mesh, buffers }).collect();
-        let vertex = EntryPoint {
-            module: &self.stages.vertex.validated.module,
-            entry: self.stages.vertex.entry,
-        };
-        let drawing = Drawing {
-            vertex,
+        let items = self.items();
+        let drawing = self.drawing(&items, views, size, fragment);
+        painter.draw_frames(&drawing).map_err(|problem| vec![problem])
+    }
+
+    fn items(&self) -> Vec<DrawItem<'_>> {
+        self.items.iter().map(|(mesh, buffers)| DrawItem { mesh, buffers }).collect()
+    }
+
+    fn drawing<'d>(
+        &'d self,
+        items: &'d [DrawItem<'d>],
+        views: &'d [Buffers],
+        size: [u32; 2],
+        fragment: Option<(EntryPoint<'d>, u32)>,
+    ) -> Drawing<'d> {
+        Drawing {
+            vertex: EntryPoint {
+                module: &self.stages.vertex.validated.module,
+                entry: self.stages.vertex.entry,
+            },
             fragment: fragment.map(|(stage, _)| stage),
             targets: fragment.map_or(0, |(_, targets)| targets),
-            items: &items,
+            items,
             views,
             buffers: &self.buffers,
             plain: &self.plain,
@@ -96,8 +109,7 @@ impl PreparedPass {
             levels: &self.levels,
             size,
             state: self.state,
-        };
-        painter.draw_frames(&drawing).map_err(|problem| vec![problem])
+        }
     }
 
     /// How many colour targets the fragment stage writes.
@@ -215,23 +227,10 @@ impl PreparedPass {
         let (size, pixel) =
             (shot.size.map(|side| side * fine), pixel.map(|at| at * fine + fine / 2));
         let view = self.eye_view([0.0; 2], size)?;
-        let items: Vec<DrawItem<'_>> =
-            self.items.iter().map(|(mesh, buffers)| DrawItem { mesh, buffers }).collect();
-        let point = |stage: &'_ ReadyStage| stage.validated.clone();
-        let (vertex, fragment) = (point(&self.stages.vertex), point(stage));
-        let drawing = Drawing {
-            vertex: EntryPoint { module: &vertex.module, entry: self.stages.vertex.entry },
-            fragment: Some(EntryPoint { module: &fragment.module, entry: stage.entry }),
-            targets: self.targets(),
-            items: &items,
-            views: std::slice::from_ref(&view),
-            buffers: &self.buffers,
-            plain: &self.plain,
-            fixtures: &self.fixtures,
-            levels: &self.levels,
-            size,
-            state: self.state,
-        };
+        let items = self.items();
+        let entry = EntryPoint { module: &stage.validated.module, entry: stage.entry };
+        let views = std::slice::from_ref(&view);
+        let drawing = self.drawing(&items, views, size, Some((entry, self.targets())));
         let found = fragments_at(&drawing, &view, pixel)?;
         Ok(found
             .into_iter()

@@ -224,10 +224,29 @@ fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
 pub fn parse_wgsl(text: &str) -> Result<naga::Module, wgsl::ParseError> {
     let read = lamplight_rules::without_unread(text);
     let text = read.as_deref().unwrap_or(text);
-    wgsl::parse_str(text).or_else(|error| match lamplight_rules::fold(text) {
-        Some(folded) => wgsl::parse_str(&folded),
-        None => Err(error),
-    })
+    match wgsl::parse_str(text) {
+        Ok(module) if !has_abstract_numbers(&module) => Ok(module),
+        read => match lamplight_rules::fold(text) {
+            Some(folded) => wgsl::parse_str(&folded),
+            None => read,
+        },
+    }
+}
+
+/// Whether a function has a number without a type. naga's front end leaves these in the arguments of
+/// such a function where another argument is not constant, and its validator refuses them.
+fn has_abstract_numbers(module: &naga::Module) -> bool {
+    use naga::{Expression, Literal};
+    let functions = module.functions.iter().map(|(_, function)| function);
+    let points = module.entry_points.iter().map(|point| &point.function);
+    functions.chain(points).flat_map(|function| function.expressions.iter()).any(
+        |(_, expression)| {
+            matches!(
+                expression,
+                Expression::Literal(Literal::AbstractInt(_) | Literal::AbstractFloat(_))
+            )
+        },
+    )
 }
 
 /// Whether no type or value of a module is too large to be written out.

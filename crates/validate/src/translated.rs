@@ -165,12 +165,7 @@ fn in_authors_text(mut problems: Diagnostics, composed: &Composed) -> Diagnostic
         .map(|problem| problem.labels.first().map(|label| label.span.range()))
         .collect();
     for problem in &mut problems {
-        let labels = std::mem::take(&mut problem.labels);
-        let moved = labels.into_iter().filter_map(|label| {
-            let span = composed.map.lookup(label.span.range())?;
-            Some(Label { span, message: label.message })
-        });
-        problem.labels = moved.collect();
+        composed.map.move_labels(problem);
     }
     let hinted = problems.into_iter().zip(places);
     hinted.map(|(problem, place)| with_hint(problem, composed, place)).collect()

@@ -157,7 +157,8 @@ impl Body<'_> {
             }
             5 | 6 => {
                 let op = *self.random.pick(&["/", "%"]);
-                format!("({a} {op} {})", self.computed(ty, depth))
+                // Of numbers alone, it may be a constant 0, which is an error.
+                format!("({a} {op} {})", self.computed(ty, 0))
             }
             7 => self.shifted(ty, &a, depth),
             8 => {

@@ -58,3 +58,17 @@ impl Dialect {
         is_keyword || WRITTEN.contains(&word) || is_function && !is_builtin(word)
     }
 }
+
+/// Whether a word is in a text of words.
+pub fn is_listed(list: &str, word: &str) -> bool {
+    list.split_whitespace().any(|known| known == word)
+}
+
+/// Whether a word is the name of a vector or a matrix, such as `float3` or `half2x2`.
+pub fn is_shape(word: &str, scalars: &[&str], sizes: &[&str]) -> bool {
+    let rest = scalars.iter().find_map(|scalar| word.strip_prefix(scalar));
+    rest.is_some_and(|rest| match rest.split_once('x') {
+        Some((columns, rows)) => sizes.contains(&columns) && sizes.contains(&rows),
+        None => sizes.contains(&rest),
+    })
+}

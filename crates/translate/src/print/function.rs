@@ -37,6 +37,48 @@ const NAMES: [(&str, &str); 25] = [
     ("fwidthFine", "fwidthFine"),
 ];
 
+/// Functions that HLSL and MSL have by the same name. Of others, each lists those that it has.
+const ALIKE: [&str; 38] = [
+    "abs",
+    "acos",
+    "all",
+    "any",
+    "asin",
+    "atan",
+    "atan2",
+    "ceil",
+    "clamp",
+    "cos",
+    "cosh",
+    "cross",
+    "determinant",
+    "distance",
+    "dot",
+    "exp",
+    "exp2",
+    "floor",
+    "fwidth",
+    "length",
+    "log",
+    "log2",
+    "max",
+    "min",
+    "normalize",
+    "pow",
+    "reflect",
+    "refract",
+    "saturate",
+    "sin",
+    "sinh",
+    "smoothstep",
+    "sqrt",
+    "step",
+    "tan",
+    "tanh",
+    "transpose",
+    "trunc",
+];
+
 /// Functions whose result has another type in GLSL.
 const COUNTS: [(&str, &str); 3] =
     [("countOneBits", "bitCount"), ("firstLeadingBit", "findMSB"), ("firstTrailingBit", "findLSB")];
@@ -157,12 +199,13 @@ impl Writer<'_> {
         for argument in arguments {
             texts.push((self.whole(&argument.value, inner)?, argument.is_on_new_line));
         }
-        let other = match self.dialect() {
+        let own: Option<fn(&str) -> Option<&'static str>> = match self.dialect() {
             Dialect::Glsl => None,
-            Dialect::Hlsl => Some(super::hlsl::function_name(name)),
-            Dialect::Msl => Some(super::msl::function_name(name)),
+            Dialect::Hlsl => Some(super::hlsl::function_name),
+            Dialect::Msl => Some(super::msl::function_name),
         };
-        if let Some(found) = other {
+        if let Some(own) = own {
+            let found = if ALIKE.contains(&name) { Some(name) } else { own(name) };
             let found =
                 found.ok_or_else(|| untranslated(value.span, format!("the function `{name}`")))?;
             return Ok(called(listed(found, &texts, is_broken, indent)));

@@ -1,6 +1,8 @@
 //! Words of HLSL, from its grammar and the list of its intrinsic functions
 //! (<https://learn.microsoft.com/windows/win32/direct3dhlsl/dx-graphics-hlsl-appendix-keywords>).
 
+use super::super::dialect::{is_listed, is_shape};
+
 /// Keywords and reserved words that a name in WGSL may have.
 const KEYWORDS: &str = "
     AppendStructuredBuffer BlendState Buffer ByteAddressBuffer CompileShader ComputeShader
@@ -31,29 +33,18 @@ const FUNCTIONS: &str = "
     printf radians rcp reflect refract reversebits round rsqrt saturate select sign sin sincos sinh
     smoothstep sqrt step tan tanh tex1D tex2D tex3D texCUBE transpose trunc";
 
-fn is_in(list: &str, word: &str) -> bool {
-    list.split_whitespace().any(|known| known == word)
-}
-
-/// A name such as `float3` or `uint2x2`.
-fn is_shape(word: &str) -> bool {
-    let scalars = ["float", "int", "uint", "bool", "half", "double", "dword"];
-    let rest = scalars.iter().find_map(|scalar| word.strip_prefix(scalar));
-    let is_size = |text: &str| matches!(text, "1" | "2" | "3" | "4");
-    rest.is_some_and(|rest| match rest.split_once('x') {
-        Some((columns, rows)) => is_size(columns) && is_size(rows),
-        None => is_size(rest),
-    })
-}
+/// What the names of vectors and matrices begin with, such as `float3` and `uint2x2`, and the sizes.
+const SCALARS: [&str; 7] = ["float", "int", "uint", "bool", "half", "double", "dword"];
+const SIZES: [&str; 4] = ["1", "2", "3", "4"];
 
 /// Whether a word can be no name.
 pub fn is_keyword(word: &str) -> bool {
-    is_in(KEYWORDS, word) || is_shape(word)
+    is_listed(KEYWORDS, word) || is_shape(word, &SCALARS, &SIZES)
 }
 
 /// Whether a word is a function of the language.
 pub fn is_function(word: &str) -> bool {
-    is_in(FUNCTIONS, word)
+    is_listed(FUNCTIONS, word)
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Words of the Metal Shading Language: those of C++14 and its own, from the specification.
 
+use super::super::dialect::{is_listed, is_shape};
+
 /// Keywords, types and macros that a name in WGSL may have.
 const KEYWORDS: &str = "
     INFINITY M_PI_F NAN alignas alignof and and_eq array asm atomic_int atomic_uint auto bitand bitor
@@ -25,31 +27,19 @@ const FUNCTIONS: &str = "
     rsqrt saturate select sign signbit simd_sum sin sincos sinh sinpi smoothstep sqrt step subsat tan
     tanh tanpi transpose trunc";
 
-fn is_in(list: &str, word: &str) -> bool {
-    list.split_whitespace().any(|known| known == word)
-}
-
-/// A name such as `float3` or `half2x2`.
-fn is_shape(word: &str) -> bool {
-    let scalars = [
-        "float", "half", "int", "uint", "short", "ushort", "char", "uchar", "bool", "long", "ulong",
-    ];
-    let rest = scalars.iter().find_map(|scalar| word.strip_prefix(scalar));
-    let is_size = |text: &str| matches!(text, "2" | "3" | "4");
-    rest.is_some_and(|rest| match rest.split_once('x') {
-        Some((columns, rows)) => is_size(columns) && is_size(rows),
-        None => is_size(rest),
-    })
-}
+/// What the names of vectors and matrices begin with, such as `float3` and `half2x2`, and the sizes.
+const SCALARS: [&str; 11] =
+    ["float", "half", "int", "uint", "short", "ushort", "char", "uchar", "bool", "long", "ulong"];
+const SIZES: [&str; 3] = ["2", "3", "4"];
 
 /// Whether a word can be no name.
 pub fn is_keyword(word: &str) -> bool {
-    is_in(KEYWORDS, word) || is_shape(word)
+    is_listed(KEYWORDS, word) || is_shape(word, &SCALARS, &SIZES)
 }
 
 /// Whether a word is a function of the standard library.
 pub fn is_function(word: &str) -> bool {
-    is_in(FUNCTIONS, word)
+    is_listed(FUNCTIONS, word)
 }
 
 #[cfg(test)]
