@@ -2,9 +2,9 @@
 
 use crate::shaders::{Cycles, Measured, Row};
 
-/// The features, the key without what all of them have, the peer, and its cycles on navi21 as its own
-/// shader with the same features was counted in November 2026: to within 3 %, since they were counted
-/// by another program.
+/// The features, the key without what all of them have, the peer, and the cycles of its own shader with
+/// the same features on navi21. These are derived: the cycles of `forward` in November 2026, divided by
+/// the ratio of both that was measured then with another program, and that has three digits.
 const ROWS: [(&str, &str, &str, i64); 18] = [
     ("a sun", "lights=directional,max_lights=1", "three.js", 193),
     ("a point", "attenuation=inverse_square_window,lights=point,max_lights=1", "three.js", 241),

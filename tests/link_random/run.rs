@@ -78,7 +78,7 @@ pub struct Ran {
     pub open: usize,
     /// How many stages the driver drew differently until the ids of the same module were
     /// renumbered.
-    pub by_numbers: usize,
+    pub by_numbers: Vec<u64>,
     /// How many stages were not run, for each reason.
     pub lacks: BTreeMap<String, usize>,
 }
@@ -87,8 +87,10 @@ impl std::fmt::Display for Ran {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { stages, numbers, open, by_numbers, lacks } = self;
         write!(f, "{stages} stages run, {numbers} numbers, {open} open")?;
-        if *by_numbers > 0 {
-            write!(f, "; {by_numbers} drawn otherwise by the driver, by the numbers of ids alone")?;
+        if !by_numbers.is_empty() {
+            let count = by_numbers.len();
+            write!(f, "; {count} drawn otherwise by the driver, by the numbers of ids alone")?;
+            write!(f, " (seeds {by_numbers:?})")?;
         }
         lacks.iter().try_for_each(|(reason, count)| write!(f, "; {count} not run: {reason}"))
     }
@@ -210,7 +212,7 @@ impl Runner {
             }
             for (target, finding) in ready.compare(&frames, ran) {
                 match driver::renumbered(&self.sessions, target, ready) {
-                    Some(name) => ran.entry(name).or_default().by_numbers += 1,
+                    Some(name) => ran.entry(name).or_default().by_numbers.push(ready.runnable.seed),
                     None => findings.push((owners[index], finding)),
                 }
             }

@@ -377,6 +377,8 @@ impl Body<'_> {
         }
         let fitting: Vec<_> = self.functions.iter().filter(|one| one.result == *ty).collect();
         let function = (!fitting.is_empty()).then(|| (*self.random.pick(&fitting)).clone())?;
+        // The arguments may have calls, too.
+        self.calls -= 1;
         let mut arguments: Vec<String> = Vec::new();
         let mut taken: Vec<String> = Vec::new();
         for parameter in &function.parameters {
@@ -387,7 +389,6 @@ impl Body<'_> {
                 Parameter::Pointer(ty) => self.pointer_to(ty, &mut taken)?,
             });
         }
-        self.calls -= 1;
         Some(format!("{}({})", function.name, arguments.join(", ")))
     }
 }

@@ -190,10 +190,11 @@ fn module_of_defaults(
     Ok(made.into_owned())
 }
 
-/// Leaves of an entry point only that it needs these overrides and variables. naga computes constants
+/// Leaves of entry points only that they need these overrides and variables. naga computes constants
 /// of functions together with overrides, and makes a module that is not valid of some: an element
-/// of a constant array is emitted once more.
-fn keep_names_only(module: &mut Module) {
+/// of a constant array is emitted once more. Every stage is a compute stage then, since others must
+/// have results.
+pub fn keep_names_only(module: &mut Module) {
     let overrides = module.overrides.iter().map(|(handle, _)| Expression::Override(handle));
     let variables =
         module.global_variables.iter().map(|(handle, _)| Expression::GlobalVariable(handle));
@@ -203,7 +204,6 @@ fn keep_names_only(module: &mut Module) {
         kept.named_expressions.insert(value, format!("lamplight_kept_{}", value.index()));
     }
     for point in &mut module.entry_points {
-        // Other stages must have results.
         if point.stage != ShaderStage::Compute {
             (point.stage, point.workgroup_size) = (ShaderStage::Compute, [1; 3]);
         }

@@ -7,7 +7,7 @@ use lamplight_bundle::{Binding, BindingKind, Language, SourceClip, Varying};
 use lamplight_compose::{Composed, SourceMap};
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
-use lamplight_emit::{isolate, reflect};
+use lamplight_emit::{isolate, reflect, with_defaults};
 use lamplight_glsl::wgsl::Clip as Conversion;
 use lamplight_scene::Clip;
 use lamplight_validate::{
@@ -237,19 +237,8 @@ fn fix_overrides(validated: &mut Validated, name: &str) -> Result<(), Diagnostic
     if validated.module.overrides.is_empty() {
         return Ok(());
     }
-    let (module, info) = (&validated.module, &validated.info);
-    let stage = module.entry_points.first().map_or(ShaderStage::Fragment, |point| point.stage);
-    let none = naga::back::PipelineConstants::default();
-    let fixed = on_large_stack(|| {
-        let point = Some((stage, name));
-        naga::back::pipeline_constants::process_overrides(module, info, point, &none)
-            .map(|(module, info)| (module.into_owned(), info.into_owned()))
-            .map_err(Box::new)
-    });
-    let (module, info) = fixed.map_err(|error| {
-        let message = format!("an `override` has no value: {error}");
-        vec![refused(&message).note("help: `--constant NAME=VALUE` gives it one")]
-    })?;
+    let fixed = on_large_stack(|| with_defaults(&validated.module, name));
+    let (module, info) = fixed.map_err(|problem| vec![problem])?;
     (validated.module, validated.info) = (module, info);
     Ok(())
 }

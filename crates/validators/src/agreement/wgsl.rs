@@ -9,7 +9,7 @@ use naga::{
 };
 
 use lamplight_bundle::{Binding, BindingKind, BindingSlot, Language, Stage, Varying};
-use lamplight_emit::reflect;
+use lamplight_emit::{keep_names_only, reflect};
 use lamplight_validate::{Validated, guard, info_for_some, parse_wgsl};
 
 use super::compare::{Differences, SlotRules, compare_reading};
@@ -114,17 +114,36 @@ fn read_module(module: &Module, info: &ModuleInfo) -> Result<Reading, String> {
         ShaderStage::Compute => Stage::Compute,
         _ => return Err("its stage is none of a bundle's".to_owned()),
     };
-    let chosen = Some((point.stage, point.name.as_str()));
-    let (fixed, _) = process_overrides(module, info, chosen, &assumed_values(module))
-        .map_err(|error| error.to_string())?;
+    let fixed = with_sizes(module, &point.name)?;
     let size = fixed.entry_points.first().map(|point| point.workgroup_size);
-    let bindings = fixed.global_variables.iter().map(|(_, one)| read_global(&fixed, one));
+    // A text may have a function that its entry point does not call, and what only that one binds.
+    let used = info.get_entry_point(0);
+    let is_used = |one: &GlobalVariable| {
+        let is_it =
+            |other: &GlobalVariable| (other.binding, other.space) == (one.binding, one.space);
+        let same = module.global_variables.iter().filter(|(_, other)| is_it(other));
+        same.into_iter().any(|(handle, _)| !used[handle].is_empty())
+    };
+    let bound = fixed.global_variables.iter().filter(|(_, one)| is_used(one));
+    let bindings = bound.map(|(_, one)| read_global(&fixed, one));
     Ok(Reading {
         entry: Some(point.name.clone()),
         stage: Some(stage),
         workgroup_size: size.filter(|_| stage == Stage::Compute),
         bindings: bindings.collect::<Result<Vec<_>, String>>()?.into_iter().flatten().collect(),
     })
+}
+
+/// The declarations of a module with numbers for the overrides in sizes. What functions compute from
+/// overrides has no part in that.
+fn with_sizes(module: &Module, entry: &str) -> Result<Module, String> {
+    let mut bare = module.clone();
+    keep_names_only(&mut bare);
+    let info = info_for_some(&bare).map_err(|error| error.to_string())?;
+    let chosen = Some((ShaderStage::Compute, entry));
+    let (fixed, _) = process_overrides(&bare, &info, chosen, &assumed_values(module))
+        .map_err(|error| error.to_string())?;
+    Ok(fixed.into_owned())
 }
 
 /// Values for the overrides that have none: naga computes nothing while one is missing.
