@@ -2,7 +2,7 @@
 //!
 //! The cases of `tests/outputs/values/` have the same values on every executor. The shaders of
 //! `tests/outputs/shaders/` are compiled for the targets that their manifest names, and the
-//! independent validators of these targets accept them.
+//! independent validators of these targets accept them, as do the rules of browsers.
 
 mod pointers;
 
@@ -64,6 +64,13 @@ fn shaders() -> Outcome {
     validated(&folder("shaders"))?;
     for_each_output(&bundle, &|name, target, found| {
         let (reflection, native) = (&found.reflection, &found.native);
+        if target.name() == "wgsl" {
+            let problems = lamplight_rules::check(std::str::from_utf8(&found.bytes)?);
+            let refused: Vec<&str> = problems.iter().map(|problem| &*problem.message).collect();
+            if !refused.is_empty() {
+                return Err(format!("{name}: browsers refuse {refused:?}").into());
+            }
+        }
         match output_differences(target, &found.bytes, reflection, native).as_slice() {
             [] => Ok(()),
             found => Err(format!("{name} in {target}: {}", found.join("\n")).into()),

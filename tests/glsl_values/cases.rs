@@ -71,6 +71,10 @@ pub const CASES: &[(&str, &str)] = &[
         "void main() { int a = 2147483647 + 1; put(a); uint b = 0u - 1u; put(b); int c = 0xFFFFFFFF; put(c); int d = 1 << 31; put(d); put(-2147483648); put(1.0 / 0.0); put(-1.0 / 0.0); }",
     ),
     (
+        "functions of constants",
+        "void main() { put(dot(vec3(1.0, 2.0, 3.0), vec3(4.0, 5.0, 6.0))); put(length(vec2(3.0, 4.0))); put(distance(vec2(1.0), vec2(4.0, 5.0))); put(normalize(vec2(0.0, 5.0)).y); put(cross(vec3(1.0, 2.0, 3.0), vec3(3.0, 1.0, 2.0)).y); put(determinant(mat3(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0))); put(determinant(mat4(2.0))); put(determinant(mat2(1.0, 2.0, 3.0, 4.0))); put(reflect(vec2(1.0, -1.0), vec2(0.0, 1.0)).y); put(refract(vec2(0.0, -1.0), vec2(0.0, 1.0), 0.5).y); put(refract(vec2(0.8, -0.6), vec2(0.0, 1.0), 4.0).x); put(faceforward(vec2(1.0, 2.0), vec2(0.0, -1.0), vec2(0.0, 1.0)).y); put(ldexp(1.5, 3)); put(packHalf2x16(vec2(1.0, -2.0))); put(unpackHalf2x16(0x3c00c000u).x); put(clamp(5, 1, 3)); put(clamp(5u, 7u, 9u)); put(fma(2.0, 3.0, 4.0)); put(uintBitsToFloat(0x40400000u)); put(intBitsToFloat(0x7f800000)); }",
+    ),
+    (
         "comma",
         "void main() { int a = 1; int b = (a += 2, a * 2); put(a); put(b); for (int i = 0, j = 5; i < j; i++, j--) put(i * 10 + j); }",
     ),

@@ -56,7 +56,7 @@ pub use header::is_header_line;
 pub use isolate::{isolate, with_defaults};
 pub use names::type_name;
 pub use reflect::reflect;
-pub use specialise::keep_names_only;
+pub use specialise::keep_variables_only;
 
 use naga::ShaderStage;
 use naga::back::glsl::Version;

@@ -11,8 +11,8 @@ use naga::back::pipeline_constants::{PipelineConstantError, process_overrides};
 use naga::compact::{KeepUnused, compact};
 use naga::valid::{ModuleInfo, TypeError, ValidationError};
 use naga::{
-    Arena, ArraySize, EntryPoint, Expression, Function, GlobalVariable, Handle, Literal, Module,
-    Override, ShaderStage, Span, StructMember, Type, TypeInner,
+    AddressSpace, Arena, ArraySize, EntryPoint, Expression, Function, GlobalVariable, Handle,
+    Literal, Module, Override, Range, ShaderStage, Span, Statement, StructMember, Type, TypeInner,
 };
 
 use super::computed::compute_in_statements;
@@ -190,18 +190,33 @@ fn module_of_defaults(
     Ok(made.into_owned())
 }
 
-/// Leaves of entry points only that they need these overrides and variables. naga computes constants
+/// Leaves of entry points only that they need the overrides and variables. naga computes constants
 /// of functions together with overrides, and makes a module that is not valid of some: an element
-/// of a constant array is emitted once more. Every stage is a compute stage then, since others must
-/// have results.
-pub fn keep_names_only(module: &mut Module) {
+/// of a constant array is emitted once more.
+fn keep_names_only(module: &mut Module) {
     let overrides = module.overrides.iter().map(|(handle, _)| Expression::Override(handle));
-    let variables =
-        module.global_variables.iter().map(|(handle, _)| Expression::GlobalVariable(handle));
+    keep_only(module, overrides.collect());
+}
+
+/// The same for the variables alone, and what their sizes need.
+pub fn keep_variables_only(module: &mut Module) {
+    keep_only(module, Vec::new());
+}
+
+/// Every stage is a compute stage then, since others must have results.
+fn keep_only(module: &mut Module, mut needed: Vec<Expression>) {
+    let variables = || module.global_variables.iter();
+    needed.extend(variables().map(|(handle, _)| Expression::GlobalVariable(handle)));
     let mut kept = Function::default();
-    for expression in overrides.chain(variables) {
+    for expression in needed {
         let value = kept.expressions.append(expression, Span::UNDEFINED);
         kept.named_expressions.insert(value, format!("lamplight_kept_{}", value.index()));
+    }
+    // A pointer to an immediate is only valid where it is read.
+    for (handle, _) in variables().filter(|(_, one)| one.space == AddressSpace::Immediate) {
+        let pointer = kept.expressions.append(Expression::GlobalVariable(handle), Span::UNDEFINED);
+        let value = kept.expressions.append(Expression::Load { pointer }, Span::UNDEFINED);
+        kept.body.push(Statement::Emit(Range::new_from_bounds(value, value)), Span::UNDEFINED);
     }
     for point in &mut module.entry_points {
         if point.stage != ShaderStage::Compute {

@@ -11,7 +11,7 @@ mod kept;
 mod spirv;
 mod text;
 
-pub use fixed::{default_values, is_length, keep_names_only, with_constants, with_defaults};
+pub use fixed::{default_values, is_length, keep_variables_only, with_constants, with_defaults};
 pub use kept::{with_expressions, written_module};
 
 use std::collections::BTreeSet;

@@ -1,6 +1,6 @@
 //! Calls: of constructors, of functions of the text, and of the language's own.
 
-use super::{Checker, Res, Symbol, fold};
+use super::{Checker, Res, Symbol, called};
 use crate::ast::{self, ExprKind as Ast};
 use crate::builtin::functions::{ATOMICS, BARRIERS, REFUSED, find_function};
 use crate::builtin::textures::{Access, find_texture_function, forms_of};
@@ -204,7 +204,7 @@ impl<'a> Checker<'a> {
                 return self.fail_arguments(name, &values, at);
             };
             let arguments = self.pass(values, &candidates[chosen].params)?;
-            let known = fold::called(name, &arguments);
+            let known = called::called(name, &arguments);
             let ty = signatures[chosen].ret.clone();
             let kind = ExprKind::Builtin(function.name, arguments);
             return Ok(Expr { kind, ty, at, known });

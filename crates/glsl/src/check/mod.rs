@@ -3,6 +3,7 @@
 //! It reports in the words of GLSL, and goes on after an error with the next statement.
 
 mod call;
+mod called;
 mod construct;
 mod decl;
 mod expr;

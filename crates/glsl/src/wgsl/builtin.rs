@@ -1,6 +1,7 @@
 //! Functions of the language: WGSL's own, operators, or functions that are added.
 
 use super::Writer;
+use super::constant::refused_operand;
 use super::path::has_effects;
 use super::value::{Strength, Value, list_text};
 use crate::builtin::functions::{ATOMICS, BARRIERS};
@@ -63,6 +64,9 @@ impl Writer<'_> {
         self.suffixed |= arguments.iter().all(|argument| argument.known.is_some());
         let mut values = self.operands(&refs);
         self.suffixed = suffixed;
+        if let Some(index) = refused_operand(expr) {
+            values[index] = self.unfolded(&arguments[index].ty, &values[index]);
+        }
         let stable = values.iter().all(|value| value.stable);
         for (argument, value) in arguments.iter().zip(&mut values) {
             let wide = EQUAL_ARGUMENTS.contains(&name)

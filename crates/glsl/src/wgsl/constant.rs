@@ -1,8 +1,9 @@
 //! Numbers as WGSL writes them.
 
 use super::Writer;
+use super::flow::each_expr;
 use super::value::{Strength, Value};
-use crate::tree::{Expr, ExprKind, Number, Op};
+use crate::tree::{Expr, ExprKind, Number, Op, Shader};
 use crate::types::{Scalar, Type};
 
 impl Writer<'_> {
@@ -68,34 +69,129 @@ impl Writer<'_> {
     }
 }
 
-/// Whether a front end of WGSL would refuse to evaluate a constant expression as it is written:
-/// integers that wrap, shifts that lose bits, results that are not finite.
+/// Whether a constant expression is written as its value: where WGSL would refuse it, and where front
+/// ends of WGSL differ.
 pub(super) fn is_risky(expr: &Expr) -> bool {
+    is_some_part(expr, &|part| match &part.kind {
+        ExprKind::Binary(Op::ShiftLeft, left, right) => {
+            left.known.is_some() && right.known.is_some()
+        }
+        ExprKind::Convert(inner) => is_lossy(inner, &part.ty),
+        _ => is_refused(part),
+    })
+}
+
+/// Whether something holds for a constant expression or for one that it is computed from.
+fn is_some_part(expr: &Expr, holds: &dyn Fn(&Expr) -> bool) -> bool {
+    let parts = |list: &[Expr]| list.iter().any(|part| is_some_part(part, holds));
+    let either = |one: &Expr, other: &Expr| is_some_part(one, holds) || is_some_part(other, holds);
+    if expr.known.is_none() {
+        return false;
+    }
+    holds(expr)
+        || match &expr.kind {
+            ExprKind::Binary(_, left, right) => either(left, right),
+            ExprKind::Unary(_, operand) => is_some_part(operand, holds),
+            ExprKind::Construct(list) | ExprKind::Builtin(_, list) => parts(list),
+            ExprKind::Convert(inner) => is_some_part(inner, holds),
+            ExprKind::Swizzle(base, _) | ExprKind::Member(base, _) => is_some_part(base, holds),
+            ExprKind::Index(base, index) => either(base, index),
+            ExprKind::Ternary(condition, yes, no) => {
+                is_some_part(condition, holds) || either(yes, no)
+            }
+            _ => false,
+        }
+}
+
+/// Whether WGSL refuses this operation on constants as it is: integers that wrap, shifts that lose
+/// bits, results that are not finite.
+fn is_refused(expr: &Expr) -> bool {
     let Some(known) = &expr.known else { return false };
     let infinite = |number: &Number| matches!(number, Number::Float(value) if !value.is_finite());
     if known.iter().any(infinite) {
         return true;
     }
     match &expr.kind {
-        ExprKind::Binary(op, left, right) => {
-            is_risky(left) || is_risky(right) || overflows(*op, left, right)
-        }
-        ExprKind::Unary(op, operand) => {
+        ExprKind::Binary(op, left, right) => overflows(*op, left, right),
+        ExprKind::Unary(Op::Negate, operand) => {
             let least = |number: &Number| *number == Number::Int(i32::MIN);
-            let negated = *op == Op::Negate
-                && (operand.known.iter().any(|known| known.iter().any(least))
-                    || operand.ty.scalar() == Some(Scalar::Uint));
-            is_risky(operand) || negated
+            operand.known.iter().any(|known| known.iter().any(least))
+                || operand.ty.scalar() == Some(Scalar::Uint)
         }
-        ExprKind::Construct(parts) | ExprKind::Builtin(_, parts) => parts.iter().any(is_risky),
-        ExprKind::Convert(inner) => is_risky(inner) || is_lossy(inner, &expr.ty),
-        ExprKind::Swizzle(base, _) | ExprKind::Member(base, _) => is_risky(base),
-        ExprKind::Index(base, index) => is_risky(base) || is_risky(index),
-        ExprKind::Ternary(condition, yes, no) => {
-            is_risky(condition) || is_risky(yes) || is_risky(no)
+        // A product within may overflow, whatever the result is.
+        ExprKind::Builtin("faceforward" | "refract", _) => true,
+        _ => false,
+    }
+}
+
+/// The operand that WGSL refuses as a constant, whatever the others are. GLSL leaves the result open
+/// there, but takes the text.
+pub(super) fn refused_operand(expr: &Expr) -> Option<usize> {
+    match &expr.kind {
+        ExprKind::Binary(op, left, right) if left.known.is_none() => {
+            is_refused_beside(*op, &left.ty, right).then_some(1)
+        }
+        ExprKind::Builtin(name, arguments) => refused_argument(name, arguments),
+        _ => None,
+    }
+}
+
+/// Whether WGSL refuses an operator for the constant at its right.
+pub(super) fn is_refused_beside(op: Op, left: &Type, right: &Expr) -> bool {
+    let Some(known) = &right.known else { return false };
+    let is_integer = matches!(left.scalar(), Some(Scalar::Int | Scalar::Uint));
+    match op {
+        Op::ShiftLeft | Op::ShiftRight => known.iter().any(|count| !is_bit(*count)),
+        Op::Div | Op::Mod if is_integer => {
+            known.iter().any(|number| matches!(number, Number::Int(0) | Number::Uint(0)))
         }
         _ => false,
     }
+}
+
+fn is_bit(number: Number) -> bool {
+    wide(number).is_some_and(|value| (0..32).contains(&value))
+}
+
+fn refused_argument(name: &str, arguments: &[Expr]) -> Option<usize> {
+    let known = |index: usize| arguments.get(index)?.known.as_deref();
+    let float = |number: Number| match number {
+        Number::Float(value) => Some(f64::from(value)),
+        other => wide(other).map(|value| value as f64),
+    };
+    let any = |low: usize, high: usize, holds: &dyn Fn(f64, f64) -> bool| {
+        let (Some(a), Some(b)) = (known(low), known(high)) else { return false };
+        (0..a.len().max(b.len())).any(|index| {
+            let pair = (float(component(a, index)), float(component(b, index)));
+            matches!(pair, (Some(a), Some(b)) if holds(a, b))
+        })
+    };
+    let bits = |offset: usize, count: usize| {
+        any(offset, count, &|offset, count| offset < 0.0 || count < 0.0 || offset + count > 32.0)
+    };
+    match name {
+        "smoothstep" => any(0, 1, &|low, high| low >= high).then_some(0),
+        "clamp" => any(1, 2, &|low, high| low > high).then_some(1),
+        "ldexp" => any(1, 1, &|exponent, _| exponent > 128.0).then_some(1),
+        "bitfieldExtract" => bits(1, 2).then_some(1),
+        "bitfieldInsert" => bits(2, 3).then_some(2),
+        _ => None,
+    }
+}
+
+/// Whether a shader has constants that WGSL refuses if they are written as they are in GLSL.
+pub fn has_refused_constants(shader: &Shader) -> bool {
+    let mut found = false;
+    let mut visit = |expr: &Expr| found |= is_refused(expr) || refused_operand(expr).is_some();
+    for var in &shader.vars {
+        if let Some(init) = &var.init {
+            init.each_part(&mut visit);
+        }
+    }
+    for function in &shader.functions {
+        each_expr(function.body.as_deref().unwrap_or_default(), shader, &mut visit);
+    }
+    found
 }
 
 /// Conversions whose value WGSL leaves open or clamps otherwise.
@@ -115,18 +211,23 @@ fn is_lossy(inner: &Expr, to: &Type) -> bool {
 fn overflows(op: Op, left: &Expr, right: &Expr) -> bool {
     let (Some(a), Some(b)) = (&left.known, &right.known) else { return false };
     let count = a.len().max(b.len());
-    let at = |known: &[Number], index: usize| {
-        if known.len() == 1 { known[0] } else { known.get(index).copied().unwrap_or(known[0]) }
-    };
-    (0..count).any(|index| overflows_number(op, at(a, index), at(b, index)))
+    (0..count).any(|index| overflows_number(op, component(a, index), component(b, index)))
+}
+
+/// A component of a vector, or a number that stands for all of them.
+fn component(known: &[Number], index: usize) -> Number {
+    known.get(index).or_else(|| known.first()).copied().unwrap_or(Number::Int(0))
+}
+
+fn wide(number: Number) -> Option<i64> {
+    match number {
+        Number::Int(value) => Some(i64::from(value)),
+        Number::Uint(value) => Some(i64::from(value)),
+        Number::Bool(_) | Number::Float(_) => None,
+    }
 }
 
 fn overflows_number(op: Op, a: Number, b: Number) -> bool {
-    let wide = |number: Number| match number {
-        Number::Int(value) => Some(i64::from(value)),
-        Number::Uint(value) => Some(i64::from(value)),
-        _ => None,
-    };
     let (Some(x), Some(y)) = (wide(a), wide(b)) else { return false };
     let range = match a {
         Number::Uint(_) => 0..=i64::from(u32::MAX),
@@ -138,7 +239,7 @@ fn overflows_number(op: Op, a: Number, b: Number) -> bool {
         Op::Mul => x.checked_mul(y),
         Op::Div => x.checked_div(y),
         Op::Mod => x.checked_rem(y),
-        Op::ShiftLeft => return true,
+        Op::ShiftLeft => is_bit(b).then(|| x << y),
         Op::ShiftRight => return !(0..32).contains(&y),
         _ => return false,
     };

@@ -1,7 +1,7 @@
 //! Expressions as texts. What needs statements puts them before the statement that is written.
 
 use super::Writer;
-use super::constant::is_risky;
+use super::constant::{is_refused_beside, is_risky};
 use super::output::Lines;
 use super::path::{has_effects, letter_name, swizzled};
 use super::value::{Strength, Value, list_text};
@@ -183,8 +183,11 @@ impl Writer<'_> {
         let suffixed = self.suffixed;
         self.suffixed |= literal(left) && literal(right);
         self.suffixed |= matches!(op, Op::ShiftLeft | Op::ShiftRight) && literal(left);
-        let values = self.operands(&[left, right]);
+        let mut values = self.operands(&[left, right]);
         self.suffixed = suffixed;
+        if left.known.is_none() && is_refused_beside(op, &left.ty, right) {
+            values[1] = self.unfolded(&right.ty, &values[1]);
+        }
         let [left_value, right_value] = values.as_slice() else { return Value::primary("", true) };
         let pair = ((&left.ty, left_value.clone()), (&right.ty, right_value.clone()));
         self.binary_values(op, pair.0, pair.1)

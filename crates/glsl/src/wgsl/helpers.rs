@@ -1,12 +1,23 @@
 //! Functions that the translated text needs beside the author's.
 
 use super::Writer;
+use super::value::Value;
+use crate::types::Type;
 
 /// Bits that are not a finite number.
 pub(super) const FLOAT_OF_BITS: &str =
     "fn NAME(bits: u32) -> f32 {\n    return bitcast<f32>(bits);\n}";
 
 impl Writer<'_> {
+    /// A constant that is none to WGSL, since it goes through a function.
+    pub(super) fn unfolded(&mut self, ty: &Type, value: &Value) -> Value {
+        let ty = self.type_text(ty);
+        let helper = self.helper_for(&format!("unfolded_{ty}"), "", |name| {
+            format!("fn {name}(value: {ty}) -> {ty} {{\n    return value;\n}}")
+        });
+        Value::primary(format!("{helper}({})", value.text), true)
+    }
+
     /// A function whose text has `NAME` for its name.
     pub(super) fn helper(&mut self, name: &str, text: &str) -> String {
         self.helper_for(name, "", |name| text.replace("NAME", name))

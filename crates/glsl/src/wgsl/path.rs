@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::rc::Rc;
 
 use super::Writer;
+use super::constant::is_refused_beside;
 use super::memory::Mem;
 use super::output::Line;
 use super::value::Value;
@@ -138,11 +139,14 @@ impl Writer<'_> {
 
     fn assign_path(&mut self, op: Option<Op>, path: &Path, pair: (&Expr, &Expr), at: At) {
         let (left, right) = pair;
-        let value = self.value(right);
+        let mut value = self.value(right);
         let Some(op) = op else {
             self.write_path(at, path, &value);
             return;
         };
+        if is_refused_beside(op, &left.ty, right) {
+            value = self.unfolded(&right.ty, &value);
+        }
         let plain = *path.mem == Mem::Value && path.column.is_none();
         let matrices = |expr: &Expr| matches!(expr.ty, Type::Matrix(..));
         let product = op == Op::Mul || (matches!(op, Op::Add | Op::Sub) && left.ty == right.ty);

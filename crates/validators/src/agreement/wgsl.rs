@@ -9,8 +9,8 @@ use naga::{
 };
 
 use lamplight_bundle::{Binding, BindingKind, BindingSlot, Language, Stage, Varying};
-use lamplight_emit::{keep_names_only, reflect};
-use lamplight_validate::{Validated, guard, info_for_some, parse_wgsl};
+use lamplight_emit::{keep_variables_only, reflect};
+use lamplight_validate::{Validated, guard, info_for_some, info_unchecked, parse_wgsl};
 
 use super::compare::{Differences, SlotRules, compare_reading};
 use super::described::Described;
@@ -138,8 +138,8 @@ fn read_module(module: &Module, info: &ModuleInfo) -> Result<Reading, String> {
 /// overrides has no part in that.
 fn with_sizes(module: &Module, entry: &str) -> Result<Module, String> {
     let mut bare = module.clone();
-    keep_names_only(&mut bare);
-    let info = info_for_some(&bare).map_err(|error| error.to_string())?;
+    keep_variables_only(&mut bare);
+    let info = info_unchecked(&bare).map_err(|error| error.to_string())?;
     let chosen = Some((ShaderStage::Compute, entry));
     let (fixed, _) = process_overrides(&bare, &info, chosen, &assumed_values(module))
         .map_err(|error| error.to_string())?;
