@@ -7,7 +7,6 @@
 //! stage that gives its inputs ordinary numbers. The partner of a vertex stage is a fragment stage
 //! that writes its inputs.
 
-mod driver;
 mod evaluated;
 mod fragment;
 mod metal;
@@ -76,22 +75,14 @@ pub struct Ran {
     /// How many numbers are neither right nor wrong: the evaluator has no bound for them, or a
     /// comparison in the stage was within the error of either result.
     pub open: usize,
-    /// How many stages the driver drew differently until the ids of the same module were
-    /// renumbered.
-    pub by_numbers: Vec<u64>,
     /// How many stages were not run, for each reason.
     pub lacks: BTreeMap<String, usize>,
 }
 
 impl std::fmt::Display for Ran {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { stages, numbers, open, by_numbers, lacks } = self;
+        let Self { stages, numbers, open, lacks } = self;
         write!(f, "{stages} stages run, {numbers} numbers, {open} open")?;
-        if !by_numbers.is_empty() {
-            let count = by_numbers.len();
-            write!(f, "; {count} drawn otherwise by the driver, by the numbers of ids alone")?;
-            write!(f, " (seeds {by_numbers:?})")?;
-        }
         lacks.iter().try_for_each(|(reason, count)| write!(f, "; {count} not run: {reason}"))
     }
 }
@@ -133,13 +124,6 @@ struct Stages {
     /// The fragment stage that is tried; `None` if it is the vertex stage.
     fragment: Option<Shipped>,
     input_stage: Option<Shipped>,
-}
-
-impl Stages {
-    /// The stage that is tried.
-    fn own(&mut self) -> &mut Shipped {
-        self.fragment.as_mut().unwrap_or(&mut self.vertex)
-    }
 }
 
 /// The words that both draws gave.
@@ -210,12 +194,8 @@ impl Runner {
                     }
                 }
             }
-            for (target, finding) in ready.compare(&frames, ran) {
-                match driver::renumbered(&self.sessions, target, ready) {
-                    Some(name) => ran.entry(name).or_default().by_numbers.push(ready.runnable.seed),
-                    None => findings.push((owners[index], finding)),
-                }
-            }
+            let found = ready.compare(&frames, ran).into_iter();
+            findings.extend(found.map(|(_, finding)| (owners[index], finding)));
         }
         Ok(findings)
     }

@@ -25,6 +25,7 @@ mod immediates;
 mod invariants;
 mod isolate;
 mod lacks;
+mod lets;
 mod lists;
 mod located;
 mod names;

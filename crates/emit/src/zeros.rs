@@ -1,7 +1,10 @@
-//! Writes arrays of zeros in HLSL.
+//! Writes arrays and matrices of zeros in HLSL.
 //!
 //! naga writes an array of zeros as `(float3[9])0`. fxc and dxc accept that, glslang does not. All
 //! three accept a list of elements where a variable is declared, and assignments to elements.
+//!
+//! It writes a matrix of zeros as `(float3x3)0`. glslang 12 takes the numbers of that from memory
+//! that it has not written: some became infinities. `(float3x3)0.0` is right in all three.
 
 /// The most elements for which a list is written.
 const MOST_LISTED: usize = 1024;
@@ -17,6 +20,28 @@ pub fn without_casts(text: &str) -> String {
     } else {
         text.to_owned()
     }
+}
+
+/// The text with a float for each integer that is cast to a matrix.
+pub fn with_float_zeros(text: &str) -> String {
+    let mut pieces = text.split(")0");
+    let mut out = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let is_number = piece.starts_with(|next: char| next == '.' || next.is_alphanumeric());
+        let is_matrix = !is_number && ends_with_matrix(&out);
+        out.push_str(if is_matrix { ")0.0" } else { ")0" });
+        out.push_str(piece);
+    }
+    out
+}
+
+/// Whether a text ends with `(float4x3` or another matrix after a bracket.
+fn ends_with_matrix(text: &str) -> bool {
+    let Some((_, ty)) = text.rsplit_once('(') else { return false };
+    let letters = ty.trim_end_matches(|letter: char| letter.is_ascii_digit() || letter == 'x');
+    let [columns, b'x', rows] = ty.as_bytes()[letters.len()..] else { return false };
+    let is_size = |size: u8| (b'2'..=b'4').contains(&size);
+    ["float", "half", "double"].contains(&letters) && is_size(columns) && is_size(rows)
 }
 
 /// `float3 a[2] = (float3[2])0;` with a list instead.
@@ -97,5 +122,21 @@ impl<'t> Zeros<'t> {
         let heads: String = self.sizes.iter().enumerate().map(head).collect();
         let place: String = (0..self.sizes.len()).map(|at| format!("[{}]", counters(at))).collect();
         format!("{indent}{heads}{{ {name}{place} = ({})0; }}", self.element)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_float_zeros;
+
+    #[test]
+    fn only_matrices_have_floats() {
+        let text = "float2x2 a = (float2x2)0;\nS b = { (half4x3)0, (float4)0, (float2x2)0 };\n";
+        let wanted =
+            "float2x2 a = (float2x2)0.0;\nS b = { (half4x3)0.0, (float4)0, (float2x2)0.0 };\n";
+        assert_eq!(with_float_zeros(text), wanted);
+        for same in ["(float2x2)0.5", "(my_float2x2)0", "f(float2x2)0u", "(float5x2)0", ")0", ""] {
+            assert_eq!(with_float_zeros(same), same);
+        }
     }
 }

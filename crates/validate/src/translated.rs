@@ -7,7 +7,7 @@ use lamplight_compose::{Composed, Segment, SourceMap};
 use lamplight_diagnostic::source::{SourceId, Span};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Label, codes};
 use lamplight_glsl::tree::Stage as GlslStage;
-use lamplight_glsl::wgsl::{Clip, Fact, Options, Written, has_refused_constants};
+use lamplight_glsl::wgsl::{Clip, Fact, Options, Written};
 use lamplight_glsl::{check, is_for_vulkan, parse};
 use naga::ShaderStage;
 
@@ -58,8 +58,8 @@ fn glsl_stage(stage: Stage) -> GlslStage {
     }
 }
 
-/// Whether a text in GLSL that naga's front end accepts keeps the rules of the language, and has no
-/// constants that WGSL refuses as they are: that front end lets both pass. It needs a large stack.
+/// Whether a text in GLSL that naga's front end accepts keeps the rules of the language: that front
+/// end lets some mistakes pass. It needs a large stack.
 pub fn keeps_rules(text: &str, stage: ShaderStage) -> bool {
     let stage = match stage {
         ShaderStage::Vertex => GlslStage::Vertex,
@@ -76,21 +76,12 @@ pub fn check_rules(composed: &Composed, stage: Stage) -> Result<(), Diagnostics>
     if mistakes.is_empty() { Ok(()) } else { Err(in_authors_text(mistakes, composed)) }
 }
 
-/// What a text breaks of GLSL's rules, or `glsl-not-translated` for constants that our translator
-/// writes as WGSL takes them, and naga does not. What has no counterpart in WGSL is no mistake.
+/// What a text breaks of GLSL's rules. What only has no counterpart in WGSL is no mistake of it.
 fn mistakes_of(text: &str, stage: GlslStage) -> Diagnostics {
     let parsed = parse::parse(text);
-    match check::check(text, &parsed, stage, COMPOSED) {
-        Ok(shader) if has_refused_constants(&shader) => {
-            let message = "a constant expression has no value in WGSL";
-            vec![Diagnostic::error(codes::GLSL_NOT_TRANSLATED, message)]
-        }
-        Ok(_) => Vec::new(),
-        Err(problems) => {
-            let is_mistake = |problem: &Diagnostic| problem.code != codes::GLSL_NOT_TRANSLATED;
-            problems.into_iter().filter(is_mistake).collect()
-        }
-    }
+    let checked = check::check(text, &parsed, stage, COMPOSED);
+    let problems = checked.err().unwrap_or_default();
+    problems.into_iter().filter(|problem| problem.code != codes::GLSL_NOT_TRANSLATED).collect()
 }
 
 /// The text as WGSL, with the places of its author. Its warnings are what WGSL has no word for.

@@ -125,6 +125,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let name = first_entry_name(info.entry_point_names)?;
     let text = setters::by_reference(&lists::with_plain_constants(&text.0));
     let text = columns::without_casts(&zeros::without_casts(&text));
+    let text = zeros::with_float_zeros(&text);
     let text = rows::with_major_rows(&setters::without_undeclared(&text));
     let text = text.replace(&format!("[{UNBOUNDED}] : register"), "[] : register");
     Ok(Emitted { bytes: text.into_bytes(), native: hlsl_reflection(source, &name, &options) })

@@ -9,7 +9,7 @@ use crate::nesting::nesting_lack;
 use crate::slots::{Numbering, native_reflection};
 use crate::text::BoundedText;
 use crate::{
-    EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, extensions, filters, sized,
+    EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, extensions, filters, lets, sized,
     specialise, unused,
 };
 use lamplight_bundle::{OverrideChoice, Target};
@@ -40,6 +40,11 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     if let Some(reason) = nesting_lack(source.module) {
         return Err(reason);
     }
+    let with_variables = lets::with_variables(source.module, source.info)?;
+    let (module, info) = with_variables
+        .as_ref()
+        .map_or((source.module, source.info), |(module, info)| (module, info));
+    let source = &EmitSource { module, info, ..*source };
     let written = specialise::written_module(source.module)?;
     let module = written.as_ref().unwrap_or(source.module);
     let mut text = BoundedText::default();

@@ -412,7 +412,7 @@ pub fn geometry<N: Number>(
         }
         Geometry::Reflect => put(m, to, n, reflect(&load(m, a, n), &load(m, b, n), n, doubt)),
         Geometry::Refract => put(m, to, n, refract(&load(m, a, n), &load(m, b, n), m[c], n, doubt)),
-        Geometry::Determinant => m[to] = determinant(&m[a..a + n * n], n, doubt),
+        Geometry::Determinant => m[to] = any_determinant(&m[a..a + n * n], n, doubt),
         Geometry::Inverse => inverse(m, n, to, a, doubt),
         Geometry::Modf => (0..n).for_each(|i| {
             let whole = N::unary(Unary::Trunc, m[a + i], doubt);
@@ -501,6 +501,32 @@ fn apply_square<N: Number>(x: N) -> N {
     N::dot(&[x], &[x])
 }
 
+/// The determinant with a bound for every way to expand it: drivers differ in which products they
+/// round, also where the terms cancel.
+fn any_determinant<N: Number>(matrix: &[N], n: usize, doubt: &mut bool) -> N {
+    let whole = determinant(matrix, n, doubt);
+    if !N::BOUNDED {
+        return whole;
+    }
+    let sizes: Vec<f64> = matrix.iter().map(|one| one.value().abs()).collect();
+    // One rounding for each sum of n! products, and n - 1 for those within a product.
+    let roundings = (1..=n).product::<usize>() + n - 1;
+    let error = roundings as f64 * f64::from(f32::EPSILON) * permanent(&sizes, n);
+    N::with_error(whole.value(), whole.error() + error)
+}
+
+/// The determinant of a matrix of sizes in which no term is subtracted.
+fn permanent(matrix: &[f64], n: usize) -> f64 {
+    let minor = |row: usize| {
+        let kept = (n..n * n).filter(|index| index % n != row);
+        kept.map(|index| matrix[index]).collect::<Vec<f64>>()
+    };
+    match n {
+        1 => matrix[0],
+        _ => (0..n).map(|row| matrix[row] * permanent(&minor(row), n - 1)).sum(),
+    }
+}
+
 /// The determinant, expanded along the first column.
 fn determinant<N: Number>(matrix: &[N], n: usize, doubt: &mut bool) -> N {
     if n == 1 {
@@ -528,12 +554,12 @@ fn write_minor<N: Number>(matrix: &[N], n: usize, column: usize, row: usize, min
 fn inverse<N: Number>(m: &mut [N], n: usize, to: usize, from: usize, doubt: &mut bool) {
     let mut matrix = [N::default(); 16];
     matrix[..n * n].copy_from_slice(&m[from..from + n * n]);
-    let whole = determinant(&matrix[..n * n], n, doubt);
+    let whole = any_determinant(&matrix[..n * n], n, doubt);
     for i in 0..n * n {
         let (column, row) = (i / n, i % n);
         let mut minor = [N::default(); 9];
         write_minor(&matrix[..n * n], n, row, column, &mut minor);
-        let part = determinant(&minor[..(n - 1) * (n - 1)], n - 1, doubt);
+        let part = any_determinant(&minor[..(n - 1) * (n - 1)], n - 1, doubt);
         let signed =
             if (column + row) % 2 == 0 { part } else { N::unary(Unary::Negate, part, doubt) };
         m[to + i] = N::binary(Binary::Divide, signed, whole, doubt);

@@ -1,9 +1,8 @@
 //! Numbers as WGSL writes them.
 
 use super::Writer;
-use super::flow::each_expr;
 use super::value::{Strength, Value};
-use crate::tree::{Expr, ExprKind, Number, Op, Shader};
+use crate::tree::{Expr, ExprKind, Number, Op};
 use crate::types::{Scalar, Type};
 
 impl Writer<'_> {
@@ -118,8 +117,6 @@ fn is_refused(expr: &Expr) -> bool {
             operand.known.iter().any(|known| known.iter().any(least))
                 || operand.ty.scalar() == Some(Scalar::Uint)
         }
-        // A product within may overflow, whatever the result is.
-        ExprKind::Builtin("faceforward" | "refract", _) => true,
         _ => false,
     }
 }
@@ -177,21 +174,6 @@ fn refused_argument(name: &str, arguments: &[Expr]) -> Option<usize> {
         "bitfieldInsert" => bits(2, 3).then_some(2),
         _ => None,
     }
-}
-
-/// Whether a shader has constants that WGSL refuses if they are written as they are in GLSL.
-pub fn has_refused_constants(shader: &Shader) -> bool {
-    let mut found = false;
-    let mut visit = |expr: &Expr| found |= is_refused(expr) || refused_operand(expr).is_some();
-    for var in &shader.vars {
-        if let Some(init) = &var.init {
-            init.each_part(&mut visit);
-        }
-    }
-    for function in &shader.functions {
-        each_expr(function.body.as_deref().unwrap_or_default(), shader, &mut visit);
-    }
-    found
 }
 
 /// Conversions whose value WGSL leaves open or clamps otherwise.

@@ -31,7 +31,6 @@ use crate::lexer::At;
 use crate::program::Numbers;
 use crate::tree::{Item, Op, Place, Shader, Stage};
 use crate::types::Type;
-pub use constant::has_refused_constants;
 use memory::Mem;
 pub use output::{Fact, Facts, Resource, Segment};
 use output::{Line, Lines};
