@@ -10,6 +10,7 @@ mod corpus;
 mod eval;
 mod forward;
 mod generate;
+mod glsl;
 mod library;
 mod load;
 mod lsp;
@@ -32,6 +33,7 @@ const BENCHMARKS: &[Benchmark] = &[
     ("compose", compose::run),
     ("eval", eval::run),
     ("gen", generate::run),
+    ("glsl", glsl::run),
     ("load", load::run),
     ("lsp", lsp::run),
     ("migrate", migrate::run),
