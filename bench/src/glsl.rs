@@ -89,8 +89,11 @@ fn texts() -> Result<Vec<(String, Stage)>, Box<dyn Error>> {
         for (file, stage) in [(&glsl.vertex, Stage::Vertex), (&glsl.fragment, Stage::Fragment)] {
             let Some(file) = file else { continue };
             let graph = resolve::glsl::load(&mut sources, &packages, &file.path);
-            let composed =
-                composer::compose(&graph.map_err(message)?, &settings, &compose::Options::default());
+            let composed = composer::compose(
+                &graph.map_err(message)?,
+                &settings,
+                &compose::Options::default(),
+            );
             texts.push((composed.map_err(message)?.text, stage));
         }
     }
