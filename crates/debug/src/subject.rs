@@ -4,8 +4,8 @@ use lamplight_compose::SourceMap;
 use lamplight_diagnostic::source::{SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_eval::{
-    Error, Function, FunctionId, Machine, Number, Observer, Program, Resources, SlotKind, Variable,
-    VariableKind,
+    Error, Function, FunctionId, Machine, Number, Observer, Paced, Program, Resources, SlotKind,
+    Variable, VariableKind,
 };
 use lamplight_lint::{DocumentedParameter, documented_parameters};
 
@@ -143,6 +143,20 @@ impl Subject {
         change: &dyn Fn(usize, N) -> N,
         observer: &mut dyn Observer<N>,
     ) -> Result<Ended<N>, Error> {
+        let mut run = self.start_changed(change)?;
+        run.finish(&self.program, observer)?;
+        Ok(Ended { result: run.result(&self.program), is_discarded: run.is_discarded() })
+    }
+
+    /// The call before its first instruction.
+    ///
+    /// # Errors
+    /// The evaluator's, about the function and what it reads.
+    pub fn start<N: Number>(&self) -> Result<Paced<N>, Error> {
+        self.start_changed(&|_, value| value)
+    }
+
+    fn start_changed<N: Number>(&self, change: &dyn Fn(usize, N) -> N) -> Result<Paced<N>, Error> {
         let mut machine = Machine::<N>::new(&self.program)?;
         machine.sanitize(true);
         machine.bind(self.resources.clone())?;
@@ -156,17 +170,10 @@ impl Subject {
             all.map(|(index, value)| change(index, value)).collect()
         };
         match &self.call {
-            Call::Alone(words) => {
-                let result = machine.observe_call(self.function, &slots(words), observer)?;
-                Ok(Ended { result, is_discarded: machine.discarded() })
-            }
+            Call::Alone(words) => machine.pace_call(self.function, &slots(words)),
             Call::Quad(words, lane) => {
                 let all = words.each_ref().map(|words| slots(words));
-                let all = all.each_ref().map(Vec::as_slice);
-                let results = machine.observe_quad(self.function, all, *lane, observer)?;
-                let is_discarded = machine.quad_discarded()[*lane & 3];
-                let result = results.into_iter().nth(*lane).unwrap_or_default();
-                Ok(Ended { result, is_discarded })
+                machine.pace_quad(self.function, all.each_ref().map(Vec::as_slice), *lane)
             }
         }
     }

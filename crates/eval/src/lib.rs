@@ -40,7 +40,7 @@ pub use dual::{DUAL_SEEDS, Dual};
 pub use error::{Error, Finding, FindingKind};
 pub use flow::SlotRange;
 pub use layout::{MAX_SLOTS, SlotKind};
-pub use machine::{Action, Executed, LOOP_LIMIT, Machine, Observer, TexelRead, TextureRead};
+pub use machine::{Action, Executed, LOOP_LIMIT, Machine, Observer, Paced, TexelRead, TextureRead};
 pub use names::{Shape, Variable, VariableKind, VariablePlace};
 pub use number::{Bounded, Number, half_from, half_to};
 pub use program::{Branch, CoveragePoint, Function, FunctionId, Program};

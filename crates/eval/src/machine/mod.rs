@@ -9,6 +9,7 @@
 
 mod compute;
 mod observe;
+mod paced;
 mod texture;
 mod watch;
 mod workgroup;
@@ -24,6 +25,8 @@ pub(crate) use compute::{convert_slot, extract_bits, geometry, insert_bits, pack
 use lamplight_diagnostic::codes;
 use lamplight_files::limits::EVAL_STEPS;
 pub use observe::{Action, Executed, Observer};
+pub use paced::Paced;
+use std::sync::Arc;
 pub(crate) use texture::{Slots, apply_access, coordinate_of, gradient_of};
 pub use texture::{TexelRead, TextureRead};
 pub(crate) use watch::Watch;
@@ -37,7 +40,7 @@ pub struct Machine<'p, N> {
     program: &'p Program,
     resources: Resources,
     /// Textures and samplers by the index of their variable.
-    resolved: BoundTextures,
+    resolved: Arc<BoundTextures>,
     lane: Lane<N>,
     /// The lanes of a quad, once one has run, and which of them were discarded.
     quad: Vec<Lane<N>>,
@@ -69,7 +72,7 @@ impl<'p, N: Number> Machine<'p, N> {
         let mut machine = Self {
             program,
             resources: Resources::default(),
-            resolved: BoundTextures::default(),
+            resolved: Arc::default(),
             lane,
             quad: Vec::new(),
             killed: [false; 4],
@@ -118,7 +121,7 @@ impl<'p, N: Number> Machine<'p, N> {
         }
         self.quad.clear();
         let places = self.program.globals.iter().map(|global| global.binding);
-        self.resolved = BoundTextures::of(&resources, places);
+        self.resolved = Arc::new(BoundTextures::of(&resources, places));
         self.resources = resources;
         Ok(())
     }
@@ -560,15 +563,6 @@ impl<N: Number> Machine<'_, N> {
         id: FunctionId,
         arguments: [&[N]; 4],
     ) -> Result<[Vec<N>; 4], Error> {
-        self.run_quad_by(id, arguments, &mut Unwatched)
-    }
-
-    fn run_quad_by(
-        &mut self,
-        id: FunctionId,
-        arguments: [&[N]; 4],
-        runner: &mut impl LaneRunner<N>,
-    ) -> Result<[Vec<N>; 4], Error> {
         let program = self.program;
         let mut lanes = std::mem::take(&mut self.quad);
         lanes.resize_with(4, || self.lane.clone());
@@ -581,7 +575,7 @@ impl<N: Number> Machine<'_, N> {
             lane.start(function.entry);
             entry = Some(function);
         }
-        let outcomes = self.together(&mut lanes, runner);
+        let outcomes = self.together(&mut lanes);
         self.killed = [0, 1, 2, 3].map(|index| lanes.get(index).is_some_and(|lane| lane.killed));
         let results = std::array::from_fn(|index| {
             entry
@@ -597,11 +591,7 @@ impl<N: Number> Machine<'_, N> {
         self.killed
     }
 
-    fn together(
-        &mut self,
-        lanes: &mut [Lane<N>],
-        runner: &mut impl LaneRunner<N>,
-    ) -> Result<(), Error> {
+    fn together(&mut self, lanes: &mut [Lane<N>]) -> Result<(), Error> {
         let env = Env {
             program: self.program,
             bound: &self.resolved,
@@ -612,38 +602,47 @@ impl<N: Number> Machine<'_, N> {
         loop {
             let mut waiting = Vec::new();
             for index in (0..4).filter(|index| running[*index]).collect::<Vec<_>>() {
-                match runner.run(env, index, &mut lanes[index], &mut self.watch)? {
+                match run_lane(env, &mut lanes[index], &mut self.watch)? {
                     LaneStop::Done => running[index] = false,
                     LaneStop::Quad => waiting.push(index),
                     LaneStop::Barrier => return Err(needs_workgroup(env.program, lanes[index].pc)),
                 }
             }
-            // The lanes that are furthest behind go first, since the others may wait at a place
-            // that those still reach.
-            let Some(&first) = waiting
-                .iter()
-                .min_by(|a, b| waiting_position(&lanes[**a]).cmp(waiting_position(&lanes[**b])))
-            else {
-                return Ok(());
-            };
-            let group: Vec<usize> = waiting
-                .into_iter()
-                .filter(|index| {
-                    waiting_position(&lanes[*index]).eq(waiting_position(&lanes[first]))
-                })
-                .collect();
-            let at = lanes[first].pc;
-            if group.len() < 4 {
-                self.watch.note(FindingKind::DivergentDerivative, at);
-            }
-            let gradients = met(env, at, lanes, &group, &mut self.watch)?;
-            for &index in &group {
-                let lane = &mut lanes[index];
-                runner.met(env, index, lane, &mut self.watch, gradients[index])?;
-                lane.pc += 1;
-            }
+            let group = first_group(lanes, &waiting);
+            let Some(&first) = group.first() else { return Ok(()) };
+            meet(env, lanes, &group, lanes[first].pc, &mut self.watch)?;
         }
     }
+}
+
+/// The waiting lanes that are furthest behind, which go on first: the others may wait at a place that
+/// these still reach.
+fn first_group<N>(lanes: &[Lane<N>], waiting: &[usize]) -> Vec<usize> {
+    let behind = waiting
+        .iter()
+        .min_by(|a, b| waiting_position(&lanes[**a]).cmp(waiting_position(&lanes[**b])));
+    let Some(&first) = behind else { return Vec::new() };
+    let is_there =
+        |index: &usize| waiting_position(&lanes[*index]).eq(waiting_position(&lanes[first]));
+    waiting.iter().copied().filter(is_there).collect()
+}
+
+/// Runs the instruction at which lanes have met. Gives the gradients of what these read of a texture.
+fn meet<N: Number>(
+    env: Env<'_>,
+    lanes: &mut [Lane<N>],
+    group: &[usize],
+    at: u32,
+    watch: &mut Watch,
+) -> Result<[Option<texture::Gradient>; 4], Error> {
+    if group.len() < 4 {
+        watch.note(FindingKind::DivergentDerivative, at);
+    }
+    let gradients = met(env, at, lanes, group, watch)?;
+    for &index in group {
+        lanes[index].pc += 1;
+    }
+    Ok(gradients)
 }
 
 /// Runs an instruction for the lanes that have met at it. Gives the gradients of what these read of a
@@ -664,54 +663,6 @@ fn met<N: Number>(
         }
         Instruction::Image { access } => texture::run_quad(env, access, lanes, group, watch),
         _ => Ok([None; 4]),
-    }
-}
-
-/// What runs the lanes of a quad.
-trait LaneRunner<N> {
-    /// Runs a lane until it ends or needs the others.
-    fn run(
-        &mut self,
-        env: Env<'_>,
-        index: usize,
-        lane: &mut Lane<N>,
-        watch: &mut Watch,
-    ) -> Result<LaneStop, Error>;
-
-    /// Called after the instruction at `pc` of the lane, which needed the others.
-    fn met(
-        &mut self,
-        env: Env<'_>,
-        index: usize,
-        lane: &mut Lane<N>,
-        watch: &mut Watch,
-        gradient: Option<texture::Gradient>,
-    ) -> Result<(), Error>;
-}
-
-/// Runs lanes that nobody observes.
-struct Unwatched;
-
-impl<N: Number> LaneRunner<N> for Unwatched {
-    fn run(
-        &mut self,
-        env: Env<'_>,
-        _: usize,
-        lane: &mut Lane<N>,
-        watch: &mut Watch,
-    ) -> Result<LaneStop, Error> {
-        run_lane(env, lane, watch)
-    }
-
-    fn met(
-        &mut self,
-        _: Env<'_>,
-        _: usize,
-        _: &mut Lane<N>,
-        _: &mut Watch,
-        _: Option<texture::Gradient>,
-    ) -> Result<(), Error> {
-        Ok(())
     }
 }
 

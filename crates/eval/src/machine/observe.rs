@@ -1,15 +1,13 @@
 //! Runs that somebody watches, instruction by instruction.
 //!
-//! An observed run makes the same steps as any other run, and shows each of them. Runs that nobody
-//! watches do not know of this module.
+//! An observed run makes the same steps as any other run, and shows each of them ([`super::Paced`]).
+//! Runs that nobody watches do not know of this module.
 
-use super::{Env, Lane, LaneStop, Machine, begin_lane, callable_function, place_arguments};
-use super::{LaneRunner, needs_quad, needs_workgroup, result_slots, run_lane, step_lane};
+use super::{Env, Lane};
 use crate::code::{Binary, Geometry, Instruction, Unary};
 use crate::error::{Error, FindingKind};
 use crate::flow::{SlotRange, read, written};
 use crate::machine::texture::{self, Gradient, TextureRead};
-use crate::machine::watch::Watch;
 use crate::number::Number;
 use crate::program::FunctionId;
 use naga::Span;
@@ -69,8 +67,8 @@ pub struct Executed<'m, N> {
     pub found: &'m [FindingKind],
     /// The memory.
     pub memory: &'m mut [N],
-    env: Env<'m>,
-    gradient: Option<Gradient>,
+    pub(super) env: Env<'m>,
+    pub(super) gradient: Option<Gradient>,
 }
 
 impl<N: Number> Executed<'_, N> {
@@ -117,65 +115,7 @@ impl<N: Number> Executed<'_, N> {
     }
 }
 
-/// What an observed run of a lane needs beside the lane.
-struct Watching<'w, N> {
-    observer: &'w mut dyn Observer<N>,
-    fresh: Vec<FindingKind>,
-}
-
-impl<N: Number> Watching<'_, N> {
-    fn show(
-        &mut self,
-        env: Env<'_>,
-        (lane, watch): (&mut Lane<N>, &mut Watch),
-        pc: u32,
-        gradient: Option<Gradient>,
-    ) -> Result<(), Error> {
-        let action = action_of(env, lane, pc);
-        // A call already has its return address, and a return no longer has it.
-        let depth = match action {
-            Action::Call { .. } => lane.calls.len().saturating_sub(1),
-            Action::Return if pc + 1 != lane.pc => lane.calls.len() + 1,
-            _ => lane.calls.len(),
-        };
-        watch.take_fresh(&mut self.fresh);
-        let span = env.span(pc);
-        let found = &self.fresh;
-        let memory = &mut lane.memory[..];
-        self.observer.see(&mut Executed { pc, span, action, depth, found, memory, env, gradient })
-    }
-
-    fn show_ahead(&mut self, env: Env<'_>, lane: &mut Lane<N>) -> Result<(), Error> {
-        let (pc, depth) = (lane.pc, lane.calls.len());
-        let (action, span) = (action_of(env, lane, pc), env.span(pc));
-        let memory = &mut lane.memory[..];
-        let (found, gradient) = (&[][..], None);
-        let mut next = Executed { pc, span, action, depth, found, memory, env, gradient };
-        self.observer.ahead(&mut next)
-    }
-
-    /// As [`super::run_lane`].
-    fn run_lane(
-        &mut self,
-        env: Env<'_>,
-        lane: &mut Lane<N>,
-        watch: &mut Watch,
-    ) -> Result<LaneStop, Error> {
-        loop {
-            let pc = lane.pc;
-            self.show_ahead(env, lane)?;
-            let stop = step_lane(env, lane, watch)?;
-            if stop != Some(LaneStop::Quad) {
-                self.show(env, (lane, watch), pc, None)?;
-            }
-            if let Some(stop) = stop {
-                return Ok(stop);
-            }
-        }
-    }
-}
-
-fn action_of<N: Number>(env: Env<'_>, lane: &Lane<N>, pc: u32) -> Action {
+pub(super) fn action_of<N: Number>(env: Env<'_>, lane: &Lane<N>, pc: u32) -> Action {
     let code = &env.program.code;
     match env.program.instruction(pc) {
         Some(Instruction::JumpUnless { condition, to }) => {
@@ -208,87 +148,4 @@ fn last_of_loop(code: &[Instruction], first: u32) -> u32 {
     let is_back = |instruction: &Instruction| matches!(instruction, Instruction::Jump { to } | Instruction::JumpUnless { to, .. } if *to == first);
     let after = code.iter().skip(first as usize).position(is_back);
     after.map_or(first, |after| first + after as u32)
-}
-
-impl<N: Number> Machine<'_, N> {
-    /// As [`Self::call`], with an observer.
-    ///
-    /// # Errors
-    /// Those of [`Self::call`], and what the observer ends the run with.
-    pub fn observe_call(
-        &mut self,
-        id: FunctionId,
-        arguments: &[N],
-        observer: &mut dyn Observer<N>,
-    ) -> Result<Vec<N>, Error> {
-        let program = self.program;
-        let function = callable_function(program, id, arguments.len())?;
-        self.check_buffers(function)?;
-        begin_lane(program, &mut self.lane, true);
-        place_arguments(&mut self.lane, function, arguments);
-        self.lane.start(function.entry);
-        let env = Env { program, bound: &self.resolved, loop_limit: self.loop_limit, quad: false };
-        let mut watching = Watching { observer, fresh: Vec::new() };
-        match watching.run_lane(env, &mut self.lane, &mut self.watch)? {
-            LaneStop::Done => Ok(result_slots(&self.lane, function).to_vec()),
-            LaneStop::Barrier => Err(needs_workgroup(program, self.lane.pc)),
-            LaneStop::Quad => Err(needs_quad(program, self.lane.pc)),
-        }
-    }
-
-    /// As [`Self::quad`], with an observer of one of the four lanes. Findings are those of this lane.
-    ///
-    /// # Errors
-    /// Those of [`Self::observe_call`].
-    pub fn observe_quad(
-        &mut self,
-        id: FunctionId,
-        arguments: [&[N]; 4],
-        lane: usize,
-        observer: &mut dyn Observer<N>,
-    ) -> Result<[Vec<N>; 4], Error> {
-        let others = Watch::new(self.program);
-        let watching = Watching { observer, fresh: Vec::new() };
-        self.run_quad_by(id, arguments, &mut OneOfFour { watching, lane, others })
-    }
-}
-
-/// Runs a quad of which one lane is observed.
-struct OneOfFour<'w, N> {
-    watching: Watching<'w, N>,
-    lane: usize,
-    /// What the other lanes report, which is of no interest.
-    others: Watch,
-}
-
-impl<N: Number> LaneRunner<N> for OneOfFour<'_, N> {
-    fn run(
-        &mut self,
-        env: Env<'_>,
-        index: usize,
-        lane: &mut Lane<N>,
-        watch: &mut Watch,
-    ) -> Result<LaneStop, Error> {
-        match index == self.lane {
-            true => self.watching.run_lane(env, lane, watch),
-            false => run_lane(env, lane, &mut self.others),
-        }
-    }
-
-    fn met(
-        &mut self,
-        env: Env<'_>,
-        index: usize,
-        lane: &mut Lane<N>,
-        watch: &mut Watch,
-        gradient: Option<Gradient>,
-    ) -> Result<(), Error> {
-        match index == self.lane {
-            true => {
-                let pc = lane.pc;
-                self.watching.show(env, (lane, watch), pc, gradient)
-            }
-            false => Ok(()),
-        }
-    }
 }

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 const MAX_FINDINGS: usize = 10_000;
 
 /// Coverage and findings of one machine.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Watch {
     pub sanitize: bool,
     pub hits: Vec<u64>,
