@@ -64,7 +64,7 @@ impl Nodes {
     /// new, callers first; `count` is the number of the next one.
     pub fn of(
         &mut self,
-        walk: &Walk<'_>,
+        walk: &Walk,
         depth: usize,
         count: &mut NodeId,
         made: &mut dyn FnMut(usize),
@@ -91,7 +91,7 @@ impl Nodes {
     }
 
     /// The call path to the frame after those that are known.
-    fn next_path(&mut self, walk: &Walk<'_>) -> usize {
+    fn next_path(&mut self, walk: &Walk) -> usize {
         let Some(caller) = self.frames.len().checked_sub(1) else { return 0 };
         let from = (self.frames[caller], walk.frames[caller].statement);
         let next = if self.paths.len() < MOST_PATHS { self.paths.len() + 1 } else { 0 };
@@ -146,7 +146,8 @@ impl Graph {
 }
 
 struct Tracer<'a> {
-    walk: Walk<'a>,
+    subject: &'a Subject,
+    walk: Walk,
     names: Nodes,
     nodes: Vec<Node>,
     inputs: usize,
@@ -175,7 +176,8 @@ impl<'a> Tracer<'a> {
             }
         }
         Self {
-            walk: Walk::new(&subject.statements, subject.function()),
+            subject,
+            walk: Walk::new(subject.function()),
             names: Nodes::default(),
             inputs: nodes.len(),
             nodes,
@@ -236,13 +238,13 @@ impl<'a> Tracer<'a> {
 
 impl Observer<f32> for Tracer<'_> {
     fn ahead(&mut self, next: &mut Executed<'_, f32>) -> Result<(), Error> {
-        let motion = self.walk.end(next);
+        let motion = self.walk.end(&self.subject.statements, next);
         if motion.is_ended
             && let Some(node) = self.node(next.depth)
         {
             self.nodes[node].runs += 1;
         }
-        self.walk.begin(next, &motion);
+        self.walk.begin(&self.subject.statements, next, &motion);
         self.decisions.resize_with(self.walk.frames.len(), Vec::new);
         Ok(())
     }

@@ -4,7 +4,8 @@ use lamplight_diagnostic::source::{SourceSet, Span};
 use lamplight_eval::TextureRead;
 use serde_json::{Value as Json, json};
 
-use crate::record::{Change, Event, Mark, Outcome, Step};
+use crate::mark::Mark;
+use crate::record::{Change, Event, Outcome, Step};
 use crate::subject::Subject;
 use crate::text::StatementId;
 use crate::value::number_json;

@@ -2,13 +2,14 @@
 //!
 //! Nothing is kept: a turn of a loop that is asked for later is run again.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use lamplight_eval::{
-    Action, Error, Executed, FindingKind, FunctionId, Observer, SlotRange, TextureRead, Traced,
-    Variable, VariableKind, VariablePlace,
+    Action, Error, Executed, FunctionId, Observer, SlotRange, TextureRead, Traced, Variable,
+    VariableKind, VariablePlace,
 };
 
+use crate::mark::{Mark, Notice};
 use crate::subject::{Ended, Subject};
 use crate::text::StatementId;
 use crate::value::Value;
@@ -52,18 +53,6 @@ pub enum Outcome {
     Return,
     /// The fragment is discarded.
     Discard,
-}
-
-/// Something that a reader should look at, where it happens first.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Mark {
-    /// What the evaluator noticed, and for an argument outside of a function's domain, which.
-    Found(FindingKind, Option<&'static str>),
-    /// The bound of a value is above the stated share, and those of its operands are not. The
-    /// share is infinite where WGSL gives no bound.
-    LostDigits(f64),
-    /// An argument that documentation excludes: the parameter, its documentation, and the value.
-    OutOfRange(String, String, f64),
 }
 
 /// A statement that ran.
@@ -160,7 +149,7 @@ struct Recorder<'a> {
     subject: &'a Subject,
     options: Options,
     see: &'a mut dyn FnMut(Event),
-    walk: Walk<'a>,
+    walk: Walk,
     /// One for each frame.
     pending: Vec<Pending>,
     is_started: bool,
@@ -170,10 +159,7 @@ struct Recorder<'a> {
     named: Vec<Vec<usize>>,
     /// The pointers that are parameters of each function.
     pointers: BTreeMap<FunctionId, Vec<usize>>,
-    /// Parameters of which was said that their value is out of range.
-    excluded: BTreeSet<usize>,
-    /// Instructions that lost digits.
-    lost: BTreeSet<u32>,
+    notice: Notice,
 }
 
 impl<'a> Recorder<'a> {
@@ -183,14 +169,13 @@ impl<'a> Recorder<'a> {
             subject,
             options,
             see,
-            walk: Walk::new(&subject.statements, subject.function()),
+            walk: Walk::new(subject.function()),
             pending: Vec::new(),
             is_started: false,
             stored,
             named,
             pointers: pointers(subject),
-            excluded: BTreeSet::new(),
-            lost: BTreeSet::new(),
+            notice: Notice::new(options.share),
         }
     }
 
@@ -239,13 +224,7 @@ impl<'a> Recorder<'a> {
             subject.variables_of(function).filter(|(_, one)| one.kind == VariableKind::Parameter);
         for (index, variable) in parameters {
             let change = change_of(index, variable, memory);
-            let documented = subject.documented(function, &variable.name);
-            let outside = documented.and_then(|documented| {
-                let exact = change.value.scalars.iter().filter_map(|scalar| scalar.exact());
-                let wrong = { exact }.find(|value| !documented.has(*value))?;
-                Some(Mark::OutOfRange(variable.name.clone(), documented.words.clone(), wrong))
-            });
-            marks.extend(outside.filter(|_| self.excluded.insert(index)));
+            marks.extend(self.notice.argument(subject, (function, index), &change.value));
             arguments.push(change);
         }
         self.pending.push(Pending::default());
@@ -272,7 +251,6 @@ impl<'a> Recorder<'a> {
                 self.change_behind(seen, &range);
             }
         }
-        self.note_lost(seen, range);
     }
 
     /// Notes what was written behind the pointers of a function.
@@ -297,23 +275,6 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Marks an instruction whose result has lost digits that its operands have.
-    fn note_lost(&mut self, seen: &Executed<'_, Traced>, range: std::ops::Range<u32>) {
-        let share = self.options.share;
-        let is_lost = |slot: u32, memory: &[Traced]| {
-            memory.get(slot as usize).map(|slot| lost_share(*slot)).filter(|lost| *lost > share)
-        };
-        let worst = range.filter_map(|slot| is_lost(slot, seen.memory)).reduce(f64::max);
-        let Some(worst) = worst else { return };
-        let mut is_inherited = false;
-        seen.read(&mut |range| {
-            is_inherited |= { range }.any(|slot| is_lost(slot, seen.memory).is_some());
-        });
-        if !is_inherited && self.lost.insert(seen.pc) {
-            self.mark(seen.depth, Mark::LostDigits(worst));
-        }
-    }
-
     fn mark(&mut self, depth: usize, mark: Mark) {
         if let Some(pending) = self.pending.get_mut(depth) {
             pending.marks.push(mark);
@@ -322,9 +283,8 @@ impl<'a> Recorder<'a> {
 
     /// Notes what an instruction did, in the statement that it belongs to.
     fn note(&mut self, seen: &Executed<'_, Traced>) {
-        for kind in seen.found {
-            let domain = seen.domain().filter(|_| *kind == FindingKind::Domain);
-            self.mark(seen.depth, Mark::Found(*kind, domain));
+        for mark in self.notice.instruction(seen) {
+            self.mark(seen.depth, mark);
         }
         self.note_written(seen);
         let outcome = match seen.action {
@@ -351,7 +311,7 @@ impl Observer<Traced> for Recorder<'_> {
         if !std::mem::replace(&mut self.is_started, true) {
             self.call(self.subject.function(), 0, next.memory);
         }
-        let motion: Motion = self.walk.end(next);
+        let motion: Motion = self.walk.end(&self.subject.statements, next);
         if motion.is_ended {
             if next.action == Action::Return
                 && let Some(pending) = self.pending.get_mut(next.depth)
@@ -361,7 +321,7 @@ impl Observer<Traced> for Recorder<'_> {
             self.finish(next.depth, Some(next.memory));
         }
         self.leave(next.depth, &motion.left);
-        self.walk.begin(next, &motion);
+        self.walk.begin(&self.subject.statements, next, &motion);
         match next.action {
             Action::Call { function } => self.call(function, next.depth + 1, next.memory),
             Action::Return => self.pending.truncate(next.depth.max(1)),
@@ -378,13 +338,6 @@ impl Observer<Traced> for Recorder<'_> {
         }
         Ok(())
     }
-}
-
-/// The share of a value that its bound has. A bound that is small by itself counts as none.
-fn lost_share(slot: Traced) -> f64 {
-    const SMALL: f64 = 1e-6;
-    let (value, bound) = (slot.exact().abs(), slot.bound());
-    if bound <= SMALL || !value.is_finite() { 0.0 } else { bound / value }
 }
 
 /// A variable with its value.

@@ -4,12 +4,14 @@ use lamplight_compose::SourceMap;
 use lamplight_diagnostic::source::{SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_eval::{
-    Error, Function, FunctionId, Machine, Number, Observer, Paced, Program, Resources, SlotKind,
-    Variable, VariableKind,
+    Error, Function, FunctionId, Machine, Number, Observer, Paced, Program, Resources, Shape,
+    SlotKind, Variable, VariableKind,
 };
 use lamplight_lint::{DocumentedParameter, documented_parameters};
 
-use crate::text::Statements;
+use crate::scope::Scopes;
+use crate::text::{StatementId, Statements};
+use crate::value::type_text;
 
 /// A text that naga read, with the way back to its authors.
 #[derive(Clone, Copy)]
@@ -39,6 +41,10 @@ pub struct Subject {
     pub program: Program,
     /// The statements that it runs.
     pub statements: Statements,
+    scopes: Scopes,
+    text: String,
+    /// The structures of the text by name.
+    structs: Vec<(String, Shape)>,
     function: FunctionId,
     call: Call,
     resources: Resources,
@@ -83,7 +89,18 @@ impl Subject {
         let statements = Statements::new(&program, text.map, text.sources);
         let names = function_names(text);
         let documented = documented_parameters(text.text);
-        Ok(Self { statements, function: id, call, resources, names, documented, program })
+        Ok(Self {
+            scopes: Scopes::new(&program, &statements, text.sources),
+            text: text.text.to_owned(),
+            structs: structs_of(text.module),
+            statements,
+            function: id,
+            call,
+            resources,
+            names,
+            documented,
+            program,
+        })
     }
 
     /// The function that is called.
@@ -118,6 +135,35 @@ impl Subject {
     ) -> impl Iterator<Item = (usize, &Variable)> + '_ {
         let all = self.program.variables().iter().enumerate();
         all.filter(move |(_, variable)| variable.function == Some(function))
+    }
+
+    /// The variables that a function sees where it is at a statement, by their numbers: those of the
+    /// module last.
+    pub fn visible(&self, function: FunctionId, statement: Option<StatementId>) -> Vec<usize> {
+        self.scopes.visible(&self.program, &self.statements, function, statement)
+    }
+
+    /// The text, in WGSL.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// What the function reads.
+    pub(crate) fn resources(&self) -> &Resources {
+        &self.resources
+    }
+
+    /// The type of a value as the text writes it; `None` for a structure without a name.
+    pub(crate) fn type_name(&self, shape: &Shape) -> Option<String> {
+        match shape {
+            Shape::Struct(_) => {
+                self.structs.iter().find(|(_, known)| known == shape).map(|(name, _)| name.clone())
+            }
+            Shape::Array(count, element) => {
+                Some(format!("array<{}, {count}>", self.type_name(element)?))
+            }
+            _ => Some(type_text(shape)),
+        }
     }
 
     /// The variable that has the result.
@@ -177,6 +223,14 @@ impl Subject {
             }
         }
     }
+}
+
+fn structs_of(module: &naga::Module) -> Vec<(String, Shape)> {
+    let named = |(_, ty): (naga::Handle<naga::Type>, &naga::Type)| {
+        let shape = Shape::of(&module.types, &ty.inner)?;
+        matches!(shape, Shape::Struct(_)).then(|| Some((ty.name.clone()?, shape)))?
+    };
+    module.types.iter().filter_map(named).collect()
 }
 
 /// The end of a run.

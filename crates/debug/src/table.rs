@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_eval::TextureRead;
 
-use crate::record::{Change, Event, Mark, Options, Outcome, Step};
+use crate::mark::Mark;
+use crate::record::{Change, Event, Options, Outcome, Step};
 use crate::subject::Subject;
 use crate::text::StatementId;
 use crate::value::{Value, digits_text};

@@ -1,6 +1,6 @@
 //! Statements of the authors' texts, and which of them each instruction belongs to.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use lamplight_compose::SourceMap;
@@ -27,6 +27,8 @@ pub struct Statements {
     of_code: Vec<Option<StatementId>>,
     /// That of each variable's declaration.
     of_variables: Vec<Option<StatementId>>,
+    /// Those with which something runs.
+    running: BTreeSet<StatementId>,
 }
 
 impl Statements {
@@ -37,7 +39,26 @@ impl Statements {
         let of_code = program.spans().iter().map(|span| finder.find(*span)).collect();
         let variables = program.variables().iter();
         let of_variables = variables.map(|variable| finder.find(variable.span)).collect();
-        Self { all: finder.all, of_code, of_variables }
+        let begins = program.beginnings().into_iter().zip(&of_code);
+        let running = begins
+            .filter_map(|(begins, at): (bool, &Option<StatementId>)| at.filter(|_| begins))
+            .collect();
+        Self { all: finder.all, of_code, of_variables, running }
+    }
+
+    /// Whether something runs with a statement, so that a run can stop there.
+    pub fn runs(&self, id: StatementId) -> bool {
+        self.running.contains(&id)
+    }
+
+    /// The statement at which a run stops for a line of a text: the first one that begins there or
+    /// below.
+    pub fn from_line(&self, source: SourceId, line: u32) -> Option<StatementId> {
+        let own = |id: &StatementId| {
+            self.get(*id).is_some_and(|one| one.span.source == source && one.line >= line)
+        };
+        let place = |id: &StatementId| self.get(*id).map(|one| one.span.start);
+        self.running.iter().copied().filter(own).min_by_key(place)
     }
 
     /// The statement that declares a variable, by its number.
@@ -111,7 +132,7 @@ fn cuts_of(text: &str) -> Vec<usize> {
 }
 
 /// The bytes of a block comment, with those that are nested in it.
-fn comment_length(bytes: &[u8]) -> usize {
+pub(crate) fn comment_length(bytes: &[u8]) -> usize {
     let (mut depth, mut at) = (0, 0);
     while at + 1 < bytes.len() {
         match &bytes[at..at + 2] {

@@ -86,10 +86,15 @@ pub struct Value {
 impl Value {
     /// Reads a value from the memory of a run.
     pub fn read(shape: &Shape, place: VariablePlace, memory: &[Traced]) -> Self {
+        Self::read_part(shape, place, 0, memory)
+    }
+
+    /// Reads a part of a value, which begins with its scalar `first`.
+    pub fn read_part(shape: &Shape, place: VariablePlace, first: u32, memory: &[Traced]) -> Self {
         let mut kinds = Vec::new();
         collect_kinds(shape, &mut kinds);
         let scalar = |(index, kind): (usize, SlotKind)| {
-            let slot = place.slot(index as u32, memory) as usize;
+            let slot = place.slot(first.saturating_add(index as u32), memory) as usize;
             Scalar { kind, slot: memory.get(slot).copied().unwrap_or_default() }
         };
         let scalars = kinds.into_iter().enumerate().map(scalar).collect();
@@ -219,7 +224,7 @@ fn kind_text(kind: SlotKind) -> &'static str {
     }
 }
 
-fn type_text(shape: &Shape) -> String {
+pub(crate) fn type_text(shape: &Shape) -> String {
     match shape {
         Shape::Scalar(kind) => kind_text(*kind).to_owned(),
         Shape::Vector(count, kind) => format!("vec{count}<{}>", kind_text(*kind)),

@@ -29,8 +29,8 @@ pub struct Frame {
 }
 
 /// Where a run is.
-pub struct Walk<'s> {
-    statements: &'s Statements,
+#[derive(Debug, Clone)]
+pub struct Walk {
     /// The functions that run, the innermost last.
     pub frames: Vec<Frame>,
     /// How many statements have begun.
@@ -48,10 +48,10 @@ pub struct Motion {
     pub is_begun: bool,
 }
 
-impl<'s> Walk<'s> {
+impl Walk {
     /// At the beginning of a call.
-    pub fn new(statements: &'s Statements, function: FunctionId) -> Self {
-        Self { statements, frames: vec![Frame::new(function)], begun: 0 }
+    pub fn new(function: FunctionId) -> Self {
+        Self { frames: vec![Frame::new(function)], begun: 0 }
     }
 
     /// The turns of all loops that run, the outermost first.
@@ -60,7 +60,7 @@ impl<'s> Walk<'s> {
     }
 
     /// What an instruction ends. Call [`Self::begin`] after what has ended is dealt with.
-    pub fn end<N: Number>(&mut self, seen: &Executed<'_, N>) -> Motion {
+    pub fn end<N: Number>(&mut self, statements: &Statements, seen: &Executed<'_, N>) -> Motion {
         let mut motion = Motion::default();
         let Some(frame) = self.frames.get_mut(seen.depth) else { return motion };
         if !frame.has_begun {
@@ -73,7 +73,7 @@ impl<'s> Walk<'s> {
             frame.loops.pop();
             motion.left.push(top);
         }
-        let at = self.statements.at(seen.pc).filter(|_| begins(seen.action));
+        let at = statements.at(seen.pc).filter(|_| begins(seen.action));
         motion.is_begun = at.is_some_and(|at| frame.statement != Some(at));
         let is_turn = matches!(seen.action, Action::Turn { .. });
         let ends = motion.is_begun || is_turn || seen.action == Action::Return;
@@ -82,8 +82,13 @@ impl<'s> Walk<'s> {
     }
 
     /// Moves on to the instruction.
-    pub fn begin<N: Number>(&mut self, seen: &Executed<'_, N>, motion: &Motion) {
-        let at = self.statements.at(seen.pc);
+    pub fn begin<N: Number>(
+        &mut self,
+        statements: &Statements,
+        seen: &Executed<'_, N>,
+        motion: &Motion,
+    ) {
+        let at = statements.at(seen.pc);
         let Some(frame) = self.frames.get_mut(seen.depth) else { return };
         if motion.is_begun {
             frame.statement = at;

@@ -220,8 +220,9 @@ fn component_name(name: &str, index: u32, count: u32) -> String {
 
 /// A run in which some numbers are seeds.
 struct SeededRun<'a> {
+    subject: &'a Subject,
     graph: &'a Graph,
-    walk: Walk<'a>,
+    walk: Walk,
     names: Nodes,
     count: NodeId,
     seeds: &'a [Seed],
@@ -236,8 +237,9 @@ struct SeededRun<'a> {
 impl<'a> SeededRun<'a> {
     fn new(subject: &'a Subject, graph: &'a Graph, seeds: &'a [Seed], slot: u32) -> Self {
         Self {
+            subject,
             graph,
-            walk: Walk::new(&subject.statements, subject.function()),
+            walk: Walk::new(subject.function()),
             names: Nodes::default(),
             count: graph.inputs,
             seeds,
@@ -288,7 +290,7 @@ impl Observer<Dual> for SeededRun<'_> {
             let inputs = self.graph.inputs;
             self.seed(|node| node < inputs, next.memory);
         }
-        let motion = self.walk.end(next);
+        let motion = self.walk.end(&self.subject.statements, next);
         if motion.is_ended
             && let Some(node) = self.node(next.depth)
         {
@@ -297,7 +299,7 @@ impl Observer<Dual> for SeededRun<'_> {
         if let Some(slot) = next.memory.get(self.slot as usize) {
             self.result = *slot;
         }
-        self.walk.begin(next, &motion);
+        self.walk.begin(&self.subject.statements, next, &motion);
         Ok(())
     }
 

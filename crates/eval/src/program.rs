@@ -184,6 +184,28 @@ impl Program {
         &self.spans
     }
 
+    /// For each instruction, whether a statement of the text can begin with it. Jumps and the like
+    /// have the place of what is around them, and variables get their initial values before the first
+    /// statement of a function.
+    pub fn beginnings(&self) -> Vec<bool> {
+        let mut entries: Vec<u32> = self.functions.iter().map(|function| function.entry).collect();
+        entries.sort_unstable();
+        let mut has_begun = false;
+        let begins = |(pc, instruction): (usize, &Instruction)| {
+            has_begun &= entries.binary_search(&(pc as u32)).is_err();
+            has_begun |= matches!(instruction, Instruction::Mark { .. });
+            let is_passed = matches!(
+                instruction,
+                Instruction::Jump { .. }
+                    | Instruction::Mark { .. }
+                    | Instruction::Return
+                    | Instruction::Trip
+            );
+            has_begun && !is_passed
+        };
+        self.code.iter().enumerate().map(begins).collect()
+    }
+
     /// The function whose instructions begin at this one.
     pub(super) fn function_at(&self, entry: u32) -> Option<FunctionId> {
         // One that could not be lowered has no instructions, so it shares its first with the next.

@@ -1,0 +1,221 @@
+//! Expressions in WGSL over the variables that a statement sees.
+//!
+//! An expression becomes a function of the text that takes the variables it names. So it may call
+//! what the text declares, and its value has its bound as any other.
+
+use std::collections::BTreeMap;
+
+use lamplight_eval::{
+    Error, Executed, FunctionId, Machine, Observer, Program, Resources, Traced, Variable,
+    VariablePlace,
+};
+
+use crate::replay::Seen;
+use crate::subject::Subject;
+use crate::text::StatementId;
+use crate::value::Value;
+
+/// The most bytes of an expression, and of brackets in each other.
+const LONGEST: usize = 2000;
+const DEEPEST: usize = 48;
+/// The most expressions that stay compiled.
+const MOST: usize = 64;
+/// The most turns of loops that a call in an expression may make.
+const TURNS: u64 = 10_000;
+
+const FUNCTION: &str = "lamplight_watch";
+const RESULT: &str = "lamplight_watched";
+
+/// An expression that is compiled for what a statement sees.
+pub struct Expression {
+    program: Program,
+    function: FunctionId,
+    result: Variable,
+    /// The variables that it takes, by their numbers.
+    takes: Vec<usize>,
+}
+
+/// Expressions that were compiled.
+#[derive(Default)]
+pub struct Expressions {
+    known: BTreeMap<(String, FunctionId, Option<StatementId>), Result<Expression, String>>,
+}
+
+impl Expressions {
+    /// Computes an expression in a function that is at a statement.
+    ///
+    /// # Errors
+    /// Why it has no value, in words.
+    pub fn value(
+        &mut self,
+        seen: &Seen<'_>,
+        frame: (FunctionId, Option<StatementId>),
+        text: &str,
+    ) -> Result<Value, String> {
+        self.compiled(seen.subject, frame, text)?.value(seen)
+    }
+
+    /// Says what is wrong with an expression, before there are values.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    pub fn check(
+        &mut self,
+        subject: &Subject,
+        frame: (FunctionId, Option<StatementId>),
+        text: &str,
+    ) -> Result<(), String> {
+        self.compiled(subject, frame, text).map(|_| ())
+    }
+
+    fn compiled(
+        &mut self,
+        subject: &Subject,
+        (function, statement): (FunctionId, Option<StatementId>),
+        text: &str,
+    ) -> Result<&Expression, String> {
+        let key = (text.to_owned(), function, statement);
+        if !self.known.contains_key(&key) && self.known.len() >= MOST {
+            self.known.clear();
+        }
+        let compile = || Expression::new(subject, &subject.visible(function, statement), text);
+        self.known.entry(key).or_insert_with(compile).as_ref().map_err(Clone::clone)
+    }
+}
+
+impl Expression {
+    /// Compiles an expression over some of the variables of a subject.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    pub fn new(subject: &Subject, visible: &[usize], text: &str) -> Result<Self, String> {
+        refuse(text)?;
+        let variables = subject.program.variables();
+        let is_named = |index: &&usize| {
+            variables.get(**index).is_some_and(|one| one.function.is_some() || is_own(one))
+                && variables.get(**index).is_some_and(|one| names(text, &one.name))
+        };
+        let takes: Vec<usize> = visible.iter().filter(is_named).copied().collect();
+        let source = format!("{}\n{}", subject.text(), function_text(subject, &takes, text)?);
+        let wrong = |words: String| words.lines().next().unwrap_or_default().to_owned();
+        let module = naga::front::wgsl::parse_str(&source)
+            .map_err(|error| wrong(error.message().to_owned()))?;
+        let (flags, all) = (naga::valid::ValidationFlags::all(), naga::valid::Capabilities::all());
+        let info = naga::valid::Validator::new(flags, all).validate(&module);
+        let info = info.map_err(|error| wrong(innermost(error.as_inner())))?;
+        let program = Program::with_names(&module, &info).map_err(|error| error.message)?;
+        let function = program.function(FUNCTION).ok_or("it cannot be run")?;
+        let is_result = |one: &&Variable| one.function == Some(function) && one.name == RESULT;
+        let result = program.variables().iter().find(is_result).cloned();
+        Ok(Self { result: result.ok_or("it has no value")?, function, takes, program })
+    }
+
+    /// Its value at a place of a run.
+    ///
+    /// # Errors
+    /// Why it has none, in words.
+    pub fn value(&self, seen: &Seen<'_>) -> Result<Value, String> {
+        let variables = seen.subject.program.variables();
+        let mut arguments = Vec::new();
+        for variable in self.takes.iter().filter_map(|index| variables.get(*index)) {
+            let slot = |index| variable.place.slot(index, seen.memory) as usize;
+            let slots = (0..variable.shape.scalars()).map(slot);
+            arguments.extend(slots.map(|at| seen.memory.get(at).copied().unwrap_or_default()));
+        }
+        let text = |error: Error| error.message;
+        // Most expressions read neither buffers nor textures.
+        let plain = self.run(Resources::default(), &arguments);
+        let found = plain.or_else(|_| self.run(seen.subject.resources().clone(), &arguments));
+        found.map_err(text)
+    }
+
+    fn run(&self, resources: Resources, arguments: &[Traced]) -> Result<Value, Error> {
+        let mut machine = Machine::<Traced>::new(&self.program)?;
+        machine.loop_limit = TURNS;
+        machine.bind(resources)?;
+        let mut run = machine.pace_call(self.function, arguments)?;
+        run.finish(&self.program, &mut Nobody)?;
+        let Variable { shape, place, .. } = &self.result;
+        Ok(Value::read(shape, *place, run.memory()))
+    }
+}
+
+struct Nobody;
+
+impl Observer<Traced> for Nobody {
+    fn ahead(&mut self, _: &mut Executed<'_, Traced>) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn see(&mut self, _: &mut Executed<'_, Traced>) -> Result<(), Error> {
+        Ok(())
+    }
+}
+
+/// Whether a variable of the module has a value of the run, which no buffer gives.
+fn is_own(variable: &Variable) -> bool {
+    variable.kind == lamplight_eval::VariableKind::Private
+}
+
+/// Whether an expression has a name as a word.
+fn names(text: &str, name: &str) -> bool {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    text.split(|c| !is_word(c)).any(|word| word == name)
+}
+
+/// The function whose variable has the value of an expression.
+fn function_text(subject: &Subject, takes: &[usize], text: &str) -> Result<String, String> {
+    let (mut parameters, mut before) = (Vec::new(), String::new());
+    for variable in takes.iter().filter_map(|index| subject.program.variables().get(*index)) {
+        let name = &variable.name;
+        let ty = subject.type_name(&variable.shape);
+        let ty = ty.ok_or_else(|| format!("the type of `{name}` has no name in the text"))?;
+        match variable.place {
+            VariablePlace::At { .. } => parameters.push(format!("{name}: {ty}")),
+            VariablePlace::Through { .. } => {
+                parameters.push(format!("{RESULT}_{name}: {ty}"));
+                before += &format!(
+                    "var {RESULT}_of_{name} = {RESULT}_{name};\nlet {name} = &{RESULT}_of_{name};\n"
+                );
+            }
+        }
+    }
+    let parameters = parameters.join(", ");
+    Ok(format!("fn {FUNCTION}({parameters}) {{\n{before}var {RESULT} = (\n{text}\n);\n}}\n"))
+}
+
+/// Refuses what is no expression before naga reads it.
+fn refuse(text: &str) -> Result<(), String> {
+    if text.trim().is_empty() {
+        return Err("there is no expression".to_owned());
+    }
+    if text.len() > LONGEST {
+        return Err(format!("an expression has at most {LONGEST} bytes"));
+    }
+    if text.contains([';', '{', '}', '@']) || text.contains("/*") || text.contains("//") {
+        return Err("an expression of WGSL has no `;`, no braces and no comments".to_owned());
+    }
+    let (mut depth, mut deepest) = (0_usize, 0);
+    for byte in text.bytes() {
+        match byte {
+            b'(' | b'[' | b'<' => depth += 1,
+            b')' | b']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        deepest = deepest.max(depth);
+    }
+    let signs =
+        text.bytes().filter(|byte| matches!(byte, b'!' | b'-' | b'~' | b'&' | b'*')).count();
+    match deepest.max(signs) > DEEPEST {
+        true => Err(format!("an expression has at most {DEEPEST} brackets in each other")),
+        false => Ok(()),
+    }
+}
+
+/// The cause of an error.
+fn innermost(error: &dyn std::error::Error) -> String {
+    match error.source() {
+        Some(source) => innermost(source),
+        None => error.to_string(),
+    }
+}
