@@ -178,6 +178,7 @@ mod whole {
     pub use lamplight_check as check;
     pub use lamplight_check::report;
     pub use lamplight_cost as cost;
+    pub use lamplight_dap as dap;
     pub use lamplight_debug as debug;
     pub use lamplight_execute as execute;
     pub use lamplight_lsp as lsp;

@@ -129,6 +129,7 @@ const ENTRIES: &[HelpEntry] = &[
         "Troubleshooting by diagnostic",
         &["lamplight explain missing-module", "lamplight explain"],
     ),
+    guide_entry("dap", "Why is this pixel black", &["lamplight dap < /dev/null"]),
     guide_entry("lsp", "In an editor", &["lamplight lsp < /dev/null"]),
     guide_entry("completions", FIRST, &["lamplight completions bash > lamplight.bash"]),
     guide_entry("man", FIRST, &["lamplight man -o man", "lamplight man gen"]),

@@ -12,6 +12,7 @@ mod compile;
 mod completions;
 mod compose;
 mod cost;
+mod dap;
 mod debug;
 mod eval;
 mod executor;
@@ -90,6 +91,7 @@ enum Command {
     Keys(keys::Arguments),
     Bindings(bindings::Arguments),
     Eval(eval::Arguments),
+    Dap(dap::Arguments),
     Debug(debug::Arguments),
     Check(check::Arguments),
     Catalogue(catalogue::Arguments),
@@ -249,6 +251,7 @@ fn dispatch_command(
         Command::Bundle(arguments) => bundle::run_bundle(arguments),
         Command::Keys(arguments) => keys::run_keys(arguments, form),
         Command::Bindings(arguments) => bindings::run_bindings(&arguments),
+        Command::Dap(arguments) => dap::run_dap(arguments, form),
         Command::Debug(arguments) => debug::run_debug(arguments, form),
         Command::Eval(arguments) => eval::run_eval(arguments, form),
         Command::Check(arguments) => check::run_check(arguments),

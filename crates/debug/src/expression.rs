@@ -3,11 +3,11 @@
 //! An expression becomes a function of the text that takes the variables it names. So it may call
 //! what the text declares, and its value has its bound as any other.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use lamplight_eval::{
-    Error, Executed, FunctionId, Machine, Observer, Program, Resources, Traced, Variable,
-    VariablePlace,
+    Error, Executed, FunctionId, Machine, Observer, Paced, Program, Shape, Traced, Variable,
+    VariableKind, VariablePlace,
 };
 
 use crate::replay::Seen;
@@ -33,6 +33,8 @@ pub struct Expression {
     result: Variable,
     /// The variables that it takes, by their numbers.
     takes: Vec<usize>,
+    /// A run of it, which begins again for each value.
+    run: Option<Paced<Traced>>,
 }
 
 /// Expressions that were compiled.
@@ -73,13 +75,13 @@ impl Expressions {
         subject: &Subject,
         (function, statement): (FunctionId, Option<StatementId>),
         text: &str,
-    ) -> Result<&Expression, String> {
+    ) -> Result<&mut Expression, String> {
         let key = (text.to_owned(), function, statement);
         if !self.known.contains_key(&key) && self.known.len() >= MOST {
             self.known.clear();
         }
         let compile = || Expression::new(subject, &subject.visible(function, statement), text);
-        self.known.entry(key).or_insert_with(compile).as_ref().map_err(Clone::clone)
+        self.known.entry(key).or_insert_with(compile).as_mut().map_err(|words| words.clone())
     }
 }
 
@@ -107,14 +109,14 @@ impl Expression {
         let function = program.function(FUNCTION).ok_or("it cannot be run")?;
         let is_result = |one: &&Variable| one.function == Some(function) && one.name == RESULT;
         let result = program.variables().iter().find(is_result).cloned();
-        Ok(Self { result: result.ok_or("it has no value")?, function, takes, program })
+        Ok(Self { result: result.ok_or("it has no value")?, function, takes, program, run: None })
     }
 
     /// Its value at a place of a run.
     ///
     /// # Errors
     /// Why it has none, in words.
-    pub fn value(&self, seen: &Seen<'_>) -> Result<Value, String> {
+    pub fn value(&mut self, seen: &Seen<'_>) -> Result<Value, String> {
         let variables = seen.subject.program.variables();
         let mut arguments = Vec::new();
         for variable in self.takes.iter().filter_map(|index| variables.get(*index)) {
@@ -122,21 +124,23 @@ impl Expression {
             let slots = (0..variable.shape.scalars()).map(slot);
             arguments.extend(slots.map(|at| seen.memory.get(at).copied().unwrap_or_default()));
         }
-        let text = |error: Error| error.message;
-        // Most expressions read neither buffers nor textures.
-        let plain = self.run(Resources::default(), &arguments);
-        let found = plain.or_else(|_| self.run(seen.subject.resources().clone(), &arguments));
-        found.map_err(text)
+        self.run(seen.subject, &arguments).map_err(|error| error.message)
     }
 
-    fn run(&self, resources: Resources, arguments: &[Traced]) -> Result<Value, Error> {
-        let mut machine = Machine::<Traced>::new(&self.program)?;
-        machine.loop_limit = TURNS;
-        machine.bind(resources)?;
-        let mut run = machine.pace_call(self.function, arguments)?;
-        run.finish(&self.program, &mut Nobody)?;
-        let Variable { shape, place, .. } = &self.result;
-        Ok(Value::read(shape, *place, run.memory()))
+    fn run(&mut self, subject: &Subject, arguments: &[Traced]) -> Result<Value, Error> {
+        let Self { program, function, result, takes: _, run } = self;
+        let run = match run {
+            Some(run) => run,
+            None => {
+                let mut machine = Machine::<Traced>::new(program)?;
+                machine.loop_limit = TURNS;
+                machine.bind(subject.resources().clone())?;
+                run.insert(machine.pace_call(*function, arguments)?)
+            }
+        };
+        run.again(program, arguments)?;
+        run.finish(program, &mut Nobody)?;
+        Ok(Value::read(&result.shape, result.place, run.memory()))
     }
 }
 
@@ -154,7 +158,7 @@ impl Observer<Traced> for Nobody {
 
 /// Whether a variable of the module has a value of the run, which no buffer gives.
 fn is_own(variable: &Variable) -> bool {
-    variable.kind == lamplight_eval::VariableKind::Private
+    variable.kind == VariableKind::Private
 }
 
 /// Whether an expression has a name as a word.
@@ -180,8 +184,26 @@ fn function_text(subject: &Subject, takes: &[usize], text: &str) -> Result<Strin
             }
         }
     }
+    before += &members_text(subject, takes, text);
     let parameters = parameters.join(", ");
     Ok(format!("fn {FUNCTION}({parameters}) {{\n{before}var {RESULT} = (\n{text}\n);\n}}\n"))
+}
+
+/// Names the members of buffers that an expression names: to authors of GLSL they are variables.
+fn members_text(subject: &Subject, takes: &[usize], text: &str) -> String {
+    let (variables, mut known) = (subject.program.variables(), BTreeSet::new());
+    known.extend(takes.iter().filter_map(|index| variables.get(*index)).map(|one| &one.name));
+    known.extend(variables.iter().filter(|one| one.function.is_none()).map(|one| &one.name));
+    let mut before = String::new();
+    for buffer in variables.iter().filter(|one| one.kind == VariableKind::Buffer) {
+        let Shape::Struct(members) = &buffer.shape else { continue };
+        for (name, _) in members {
+            if names(text, name) && known.insert(name) {
+                before += &format!("let {name} = {}.{name};\n", buffer.name);
+            }
+        }
+    }
+    before
 }
 
 /// Refuses what is no expression before naga reads it.

@@ -124,6 +124,8 @@ struct Moment {
     place: Place,
     /// Whether the observer has seen the next instruction.
     is_looked: bool,
+    /// How many moves there are until somebody is asked whether to go on.
+    patience: u32,
 }
 
 /// What is asked at each halt.
@@ -179,7 +181,7 @@ impl Replay {
             shown: 1,
             next: None,
         };
-        let now = Moment { run: subject.start()?, place, is_looked: false };
+        let now = Moment { run: subject.start()?, place, is_looked: false, patience: PATIENCE };
         let most = (BYTES / 2 / now.run.bytes().max(1)).clamp(FEWEST, MOST);
         let kept = BTreeMap::from([(0, now.clone())]);
         Ok(Self { subject, now, kept, apart: APART, near: BTreeMap::new(), most })
@@ -192,7 +194,7 @@ impl Replay {
 
     /// Where the run is.
     pub fn seen(&self) -> Seen<'_> {
-        let Moment { run, place, is_looked: _ } = &self.now;
+        let Moment { run, place, is_looked: _, patience: _ } = &self.now;
         Seen { subject: &self.subject, place, memory: run.memory() }
     }
 
@@ -242,7 +244,7 @@ impl Replay {
                     Gone::Ended => break,
                     Gone::Interrupted => return Found::Interrupted,
                 }
-                let Moment { run, place, is_looked: _ } = &moment;
+                let Moment { run, place, is_looked: _, patience: _ } = &moment;
                 let seen = Seen { subject: &self.subject, place, memory: run.memory() };
                 if wanted(&seen) {
                     last = Some(place.clock);
@@ -319,8 +321,14 @@ impl Moment {
         if matches!(self.place.halt, Halt::End | Halt::Failed(_)) {
             return Gone::Ended;
         }
-        let mut patience = PATIENCE;
         loop {
+            self.patience -= 1;
+            if self.patience == 0 {
+                self.patience = PATIENCE;
+                if is_interrupted() {
+                    return Gone::Interrupted;
+                }
+            }
             match self.move_once(subject) {
                 Ok(()) if self.run.has_ended() => self.place.next = Some(Halt::End),
                 Ok(()) => {}
@@ -330,13 +338,6 @@ impl Moment {
                 self.place.clock += 1;
                 self.place.halt = halt;
                 return Gone::Halted;
-            }
-            patience -= 1;
-            if patience == 0 {
-                if is_interrupted() {
-                    return Gone::Interrupted;
-                }
-                patience = PATIENCE;
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use lamplight_diagnostic::source::{SourceId, SourceSet};
-use lamplight_eval::{FunctionId, Program, VariableKind};
+use lamplight_eval::{FunctionId, Program, Variable, VariableKind};
 
 use crate::text::{StatementId, Statements, comment_length};
 
@@ -48,6 +48,7 @@ impl Scopes {
                 (None, _) => of_module.push(index),
                 (Some(of), _) if of != function => {}
                 (Some(_), VariableKind::Parameter) => own.push((0, index)),
+                (Some(_), VariableKind::Let) if is_parameter(program, variable) => {}
                 (Some(_), _) => {
                     let extent = self.extents.get(index).and_then(|extent| extent.as_ref());
                     let seen = extent.zip(at).filter(|((source, range), at)| {
@@ -70,6 +71,15 @@ impl Scopes {
         });
         found
     }
+}
+
+/// Whether a named value is a parameter by its own name, as naga names these too.
+fn is_parameter(program: &Program, one: &Variable) -> bool {
+    program.variables().iter().any(|other| {
+        other.kind == VariableKind::Parameter
+            && (other.function, &other.name) == (one.function, &one.name)
+            && other.place == one.place
+    })
 }
 
 /// Where the block ends in which a declaration is. That of a `for` is seen up to the end of its loop.

@@ -143,6 +143,11 @@ impl Subject {
         self.scopes.visible(&self.program, &self.statements, function, statement)
     }
 
+    /// The function that has a statement.
+    pub fn function_of(&self, statement: StatementId) -> Option<FunctionId> {
+        self.statements.first_code(statement).and_then(|pc| self.program.function_around(pc))
+    }
+
     /// The text, in WGSL.
     pub(crate) fn text(&self) -> &str {
         &self.text
@@ -154,7 +159,7 @@ impl Subject {
     }
 
     /// The type of a value as the text writes it; `None` for a structure without a name.
-    pub(crate) fn type_name(&self, shape: &Shape) -> Option<String> {
+    pub fn type_name(&self, shape: &Shape) -> Option<String> {
         match shape {
             Shape::Struct(_) => {
                 self.structs.iter().find(|(_, known)| known == shape).map(|(name, _)| name.clone())
@@ -270,8 +275,8 @@ fn function_names(text: SubjectText<'_>) -> Vec<FunctionName> {
         let span = span.to_range().and_then(|range| text.map.lookup(range));
         let written = span.and_then(|span| {
             let before = text.sources.get(span.source).text.get(..span.start as usize)?;
-            let head = before.rfind("fn ").map(|at| &before[at..])?;
-            written_name(head)
+            let head = ["fn ", "void "].map(|word| before.rfind(word)).into_iter().max()??;
+            written_name(&before[head..])
         });
         FunctionName { name: written.unwrap_or(name), span }
     };

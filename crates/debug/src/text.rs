@@ -71,6 +71,11 @@ impl Statements {
         self.of_code.get(pc as usize).copied().flatten()
     }
 
+    /// The first instruction of a statement.
+    pub fn first_code(&self, id: StatementId) -> Option<u32> {
+        self.of_code.iter().position(|at| *at == Some(id)).map(|pc| pc as u32)
+    }
+
     /// A statement by its index.
     pub fn get(&self, id: StatementId) -> Option<&Statement> {
         self.all.get(id as usize)

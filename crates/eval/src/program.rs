@@ -213,6 +213,11 @@ impl Program {
         after.checked_sub(1).map(|index| FunctionId(index as u32))
     }
 
+    /// The function that has an instruction.
+    pub fn function_around(&self, pc: u32) -> Option<FunctionId> {
+        self.function_at(pc)
+    }
+
     /// The function or entry point of that name.
     pub fn function(&self, name: &str) -> Option<FunctionId> {
         self.functions

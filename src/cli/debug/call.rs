@@ -4,14 +4,15 @@ use std::sync::{Mutex, PoisonError};
 
 use lamplight_debug::{Call, Subject, SubjectText};
 
-use super::{Arguments, report};
+use super::{Arguments, Ready};
 use crate::check::expression::compose_expression;
 use crate::cli::failure::Failure;
 use crate::cli::own::OwnPackage;
 use crate::eval::Resources;
 use crate::source::SourceSet;
 
-pub fn debug_call(arguments: &Arguments, text: &str) -> Result<(), Failure> {
+/// Calls `then` with the call, ready to run.
+pub fn with_call(arguments: &Arguments, text: &str, then: Ready<'_>) -> Result<(), Failure> {
     let library = OwnPackage::at(arguments.render.root()).library()?;
     let sources = Mutex::new(SourceSet::default());
     let composed = compose_expression(&library, &sources, text.trim());
@@ -28,7 +29,7 @@ pub fn debug_call(arguments: &Arguments, text: &str) -> Result<(), Failure> {
     };
     let subject = Subject::new(text, found.function, Call::Alone(Vec::new()), Resources::default());
     match subject {
-        Ok(subject) => report::report_run(arguments, text, &subject),
+        Ok(subject) => then(text, subject),
         Err(error) => Err(Failure::Input(sources.clone(), vec![error])),
     }
 }

@@ -6,6 +6,7 @@ mod report;
 mod why;
 
 use clap::Args;
+use lamplight_debug::{Subject, SubjectText};
 
 use super::failure::{DiagnosticForm, Failure};
 use super::render;
@@ -77,10 +78,24 @@ fn refuse_files(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn debug(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    with_subject(arguments, form, &mut |text, subject| {
+        report::report_run(arguments, text, &subject)
+    })
+}
+
+/// What is done with a fragment or a call that is ready to run.
+pub type Ready<'a> = &'a mut dyn FnMut(SubjectText<'_>, Subject) -> Result<(), Failure>;
+
+/// Calls `then` with what the arguments name.
+pub fn with_subject(
+    arguments: &Arguments,
+    form: DiagnosticForm,
+    then: Ready<'_>,
+) -> Result<(), Failure> {
     refuse_files(arguments)?;
     let subject = arguments.render.subject().unwrap_or_default();
     if subject.contains('(') && !std::path::Path::new(subject).is_file() {
-        return call::debug_call(arguments, subject);
+        return call::with_call(arguments, subject, then);
     }
     let Some(at) = arguments.pixel else {
         return Err(Failure::usage(
@@ -88,5 +103,20 @@ fn debug(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {
              needs none",
         ));
     };
-    pixel::debug_pixel(arguments, at, form)
+    pixel::with_pixel(arguments, at, form, then)
+}
+
+impl Arguments {
+    /// What is run, in words.
+    pub fn title(&self) -> String {
+        match self.pixel {
+            Some([x, y]) => format!("pixel {x},{y}"),
+            None => self.render.subject().unwrap_or_default().to_owned(),
+        }
+    }
+
+    /// The share of a value that its error may have before its digits count as lost.
+    pub fn lost_share(&self) -> f64 {
+        self.lost / 100.0
+    }
 }

@@ -2,14 +2,16 @@
 
 use lamplight_debug::{Call, Subject, SubjectText};
 
-use super::{Arguments, report};
+use super::{Arguments, Ready};
 use crate::cli::failure::{DiagnosticForm, Failure};
 use crate::cli::render::{self, ReadyFragments};
 
-pub fn debug_pixel(
+/// Calls `then` with the visible fragment of a pixel, ready to run.
+pub fn with_pixel(
     arguments: &Arguments,
     pixel: [u32; 2],
     form: DiagnosticForm,
+    then: Ready<'_>,
 ) -> Result<(), Failure> {
     let ReadyFragments { fragments, sources } =
         render::fragments_at(&arguments.render, pixel, form)?;
@@ -28,7 +30,7 @@ pub fn debug_pixel(
     let fragment = first.fragment;
     let call = Call::Quad(fragment.arguments, fragment.lane);
     match Subject::new(text, first.stage.entry, call, fragment.resources) {
-        Ok(subject) => report::report_run(arguments, text, &subject),
+        Ok(subject) => then(text, subject),
         Err(error) => Err(Failure::Input(sources.clone(), vec![error])),
     }
 }

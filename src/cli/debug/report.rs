@@ -19,7 +19,7 @@ pub fn report_run(
     if let Some(asked) = &arguments.why {
         return super::why::report_why(arguments, asked, text, subject);
     }
-    let options = Options { share: arguments.lost / 100.0, turns: arguments.turns };
+    let options = Options { share: arguments.lost_share(), turns: arguments.turns };
     let mut out = stdout();
     let mut written = Ok(());
     let mut write = |line: String| {

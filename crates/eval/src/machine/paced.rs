@@ -21,6 +21,12 @@ pub struct Paced<N> {
     function: FunctionId,
     bound: Arc<BoundTextures>,
     loop_limit: u64,
+    state: State<N>,
+}
+
+/// What changes while it runs.
+#[derive(Debug, Clone)]
+struct State<N> {
     lanes: Vec<Lane<N>>,
     /// The lane that is observed.
     shown: usize,
@@ -72,48 +78,68 @@ impl<N: Number> Machine<'_, N> {
             function: id,
             bound: Arc::clone(&self.resolved),
             loop_limit: self.loop_limit,
-            lanes,
-            shown,
-            stops: [None; 4],
-            watch,
-            others: Watch::new(self.program),
-            fresh: Vec::new(),
+            state: State {
+                lanes,
+                shown,
+                stops: [None; 4],
+                watch,
+                others: Watch::new(self.program),
+                fresh: Vec::new(),
+            },
         })
     }
 }
 
 impl<N: Number> Paced<N> {
+    /// Begins again, with other arguments for all lanes.
+    ///
+    /// # Errors
+    /// Those of [`Machine::call`] about the arguments.
+    pub fn again(&mut self, program: &Program, arguments: &[N]) -> Result<(), Error> {
+        let function = callable_function(program, self.function, arguments.len())?;
+        for lane in &mut self.state.lanes {
+            begin_lane(program, lane, true);
+            place_arguments(lane, function, arguments);
+            lane.start(function.entry);
+        }
+        self.state.stops = [None; 4];
+        Ok(())
+    }
+
+    fn lane(&self) -> Option<&Lane<N>> {
+        self.state.lanes.get(self.state.shown)
+    }
+
     /// Whether the observed lane has returned.
     pub fn has_ended(&self) -> bool {
-        self.stops[self.shown] == Some(LaneStop::Done)
+        self.state.stops[self.state.shown] == Some(LaneStop::Done)
     }
 
     /// The memory of the observed lane.
     pub fn memory(&self) -> &[N] {
-        self.lanes.get(self.shown).map_or(&[], |lane| &lane.memory)
+        self.lane().map_or(&[], |lane| &lane.memory)
     }
 
     /// The flattened result of the observed lane, once it has returned.
     pub fn result(&self, program: &Program) -> Vec<N> {
-        let lane = self.lanes.get(self.shown);
-        let both = program.signature(self.function).zip(lane);
+        let both = program.signature(self.function).zip(self.lane());
         both.map_or(Vec::new(), |(function, lane)| result_slots(lane, function).to_vec())
     }
 
     /// Whether the observed lane ran into `discard`.
     pub fn is_discarded(&self) -> bool {
-        self.lanes.get(self.shown).is_some_and(|lane| lane.killed)
+        self.lane().is_some_and(|lane| lane.killed)
     }
 
-    /// How many instructions and turns of loops the observed lane has made.
+    /// How many steps and turns of loops the observed lane has made.
     pub fn made(&self) -> (u64, u64) {
-        self.lanes.get(self.shown).map_or((0, 0), |lane| (lane.steps, lane.trips))
+        self.lane().map_or((0, 0), |lane| (lane.steps, lane.trips))
     }
 
     /// About how many bytes a copy needs.
     pub fn bytes(&self) -> usize {
-        let slots: usize = self.lanes.iter().map(|lane| lane.memory.len()).sum();
-        slots * size_of::<N>() + 2 * size_of::<u64>() * self.watch.hits.len()
+        let slots: usize = self.state.lanes.iter().map(|lane| lane.memory.len()).sum();
+        slots * size_of::<N>() + 2 * size_of::<u64>() * self.state.watch.hits.len()
     }
 
     /// Shows the observer the next instruction before it runs.
@@ -121,9 +147,10 @@ impl<N: Number> Paced<N> {
     /// # Errors
     /// The observer's.
     pub fn look(&mut self, program: &Program, observer: &mut dyn Observer<N>) -> Result<(), Error> {
-        let (bound, quad) = (Arc::clone(&self.bound), self.lanes.len() > 1);
-        let env = Env { program, bound: &bound, loop_limit: self.loop_limit, quad };
-        let Some(lane) = self.lanes.get_mut(self.shown) else { return Ok(()) };
+        let Self { function: _, bound, loop_limit, state } = self;
+        let quad = state.lanes.len() > 1;
+        let env = Env { program, bound, loop_limit: *loop_limit, quad };
+        let Some(lane) = state.lanes.get_mut(state.shown) else { return Ok(()) };
         let (pc, depth) = (lane.pc, lane.calls.len());
         let (action, span) = (action_of(env, lane, pc), env.span(pc));
         let memory = &mut lane.memory[..];
@@ -136,19 +163,20 @@ impl<N: Number> Paced<N> {
     /// # Errors
     /// Those of [`Machine::call`] and the observer's.
     pub fn step(&mut self, program: &Program, observer: &mut dyn Observer<N>) -> Result<(), Error> {
-        let (bound, quad) = (Arc::clone(&self.bound), self.lanes.len() > 1);
-        let env = Env { program, bound: &bound, loop_limit: self.loop_limit, quad };
-        let Some(lane) = self.lanes.get_mut(self.shown) else { return Ok(()) };
+        let Self { function: _, bound, loop_limit, state } = self;
+        let quad = state.lanes.len() > 1;
+        let env = Env { program, bound, loop_limit: *loop_limit, quad };
+        let Some(lane) = state.lanes.get_mut(state.shown) else { return Ok(()) };
         let pc = lane.pc;
-        let stop = step_lane(env, lane, &mut self.watch)?;
-        self.stops[self.shown] = stop;
+        let stop = step_lane(env, lane, &mut state.watch)?;
+        state.stops[state.shown] = stop;
         let gradient = match stop {
             Some(LaneStop::Barrier) => return Err(needs_workgroup(program, lane.pc)),
             Some(LaneStop::Quad) if !quad => return Err(needs_quad(program, lane.pc)),
-            Some(LaneStop::Quad) => self.meet_others(env)?,
+            Some(LaneStop::Quad) => state.meet_others(env)?,
             Some(LaneStop::Done) | None => None,
         };
-        self.show(env, pc, gradient, observer)
+        state.show(env, pc, gradient, observer)
     }
 
     /// Runs all of it.
@@ -166,7 +194,9 @@ impl<N: Number> Paced<N> {
         }
         Ok(())
     }
+}
 
+impl<N: Number> State<N> {
     /// Runs the other lanes until the observed one has what it waits for.
     fn meet_others(&mut self, env: Env<'_>) -> Result<Option<texture::Gradient>, Error> {
         loop {

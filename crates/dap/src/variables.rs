@@ -1,0 +1,336 @@
+//! Scopes, variables as trees, and expressions.
+
+use lamplight_debug::{Frame, Halt, Marked, Scalar, Seen, Value as Traced};
+use lamplight_eval::{Shape, SlotKind, VariableKind, VariablePlace};
+use serde_json::{Value, json};
+
+use crate::answer::{Failed, Turn};
+use crate::present::{number_rows, shown};
+use crate::session::{Running, Session};
+
+/// The most rows of one answer.
+const ROWS: u32 = 1000;
+/// The most values that the client may ask for while the run stands.
+const MOST: usize = 1 << 16;
+
+/// What the client may ask for by a number.
+#[derive(Debug, Clone)]
+pub(crate) enum Handle {
+    /// Variables by their numbers, and the function that has just returned.
+    Group(Vec<usize>, Option<usize>),
+    /// A part of the memory: its name in expressions, its shape, place and first scalar.
+    Part(Part),
+    /// A value of an expression.
+    Value(Traced),
+    /// A number.
+    Number(Scalar),
+    /// All marks so far.
+    Marks,
+}
+
+/// A part of the memory.
+#[derive(Debug, Clone)]
+pub(crate) struct Part {
+    path: String,
+    shape: Shape,
+    place: VariablePlace,
+    first: u32,
+}
+
+impl Part {
+    fn read(&self, seen: &Seen<'_>) -> Traced {
+        Traced::read_part(&self.shape, self.place, self.first, seen.memory)
+    }
+
+    /// Its parts by name; of an array those from a number on.
+    fn parts(&self, start: u32, count: u32) -> Vec<(String, Self)> {
+        let part = |name: String, shape: &Shape, offset: u32| {
+            let dot = if name.starts_with('[') { "" } else { "." };
+            let path = format!("{}{dot}{name}", self.path);
+            let first = self.first.saturating_add(offset);
+            (name, Self { path, shape: shape.clone(), place: self.place, first })
+        };
+        match &self.shape {
+            Shape::Scalar(_) => Vec::new(),
+            Shape::Vector(size, kind) => ["x", "y", "z", "w"]
+                .into_iter()
+                .take(*size as usize)
+                .zip(0..)
+                .map(|(name, at)| part(name.to_owned(), &Shape::Scalar(*kind), at))
+                .collect(),
+            Shape::Matrix { columns, rows } => {
+                let column = Shape::Vector(*rows, SlotKind::Float);
+                (0..*columns).map(|at| part(format!("[{at}]"), &column, at * rows)).collect()
+            }
+            Shape::Array(size, element) => {
+                let end = start.saturating_add(count).min(*size);
+                let scalars = element.scalars();
+                (start..end)
+                    .map(|at| part(format!("[{at}]"), element, at.saturating_mul(scalars)))
+                    .collect()
+            }
+            Shape::Struct(members) => {
+                let mut offset = 0;
+                let mut member = |(name, shape): &(String, Shape)| {
+                    let own = part(name.clone(), shape, offset);
+                    offset += shape.scalars();
+                    own
+                };
+                members.iter().map(&mut member).collect()
+            }
+        }
+    }
+
+    /// The part that a path such as `.position.x` or `[2]` leads to.
+    fn follow(&self, path: &str) -> Option<Self> {
+        let path = path.trim();
+        if path.is_empty() {
+            return Some(self.clone());
+        }
+        let (name, rest) = match path.strip_prefix('[') {
+            Some(rest) => {
+                let (index, rest) = rest.split_once(']')?;
+                let index = index.trim().trim_end_matches(['u', 'i']);
+                (format!("[{}]", index.parse::<u32>().ok()?), rest)
+            }
+            None => {
+                let path = path.strip_prefix('.')?.trim_start();
+                let end = path.find(['.', '[']).unwrap_or(path.len());
+                (path[..end].trim().to_owned(), &path[end..])
+            }
+        };
+        let name = match (&self.shape, name.as_str()) {
+            (Shape::Vector(..), "r") => "x".to_owned(),
+            (Shape::Vector(..), "g") => "y".to_owned(),
+            (Shape::Vector(..), "b") => "z".to_owned(),
+            (Shape::Vector(..), "a") => "w".to_owned(),
+            _ => name,
+        };
+        let index = name.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')?.parse().ok());
+        let parts = self.parts(index.unwrap_or(0), if index.is_some() { 1 } else { ROWS });
+        parts.into_iter().find(|(known, _)| *known == name)?.1.follow(rest)
+    }
+}
+
+impl Session {
+    pub fn scopes(&mut self, turn: &Turn<'_>) -> Result<Value, Failed> {
+        let frame = turn.arguments.get("frameId").and_then(Value::as_i64).unwrap_or(0);
+        let run = self.running_mut()?;
+        let scopes = run.scopes_of(frame)?;
+        let mut rows = Vec::new();
+        for (name, hint, handle, count) in scopes {
+            let reference = run.handle(handle)?;
+            rows.push(json!({
+                "name": name, "presentationHint": hint, "variablesReference": reference,
+                "namedVariables": count, "expensive": false,
+            }));
+        }
+        Ok(json!({ "scopes": rows }))
+    }
+
+    pub fn variables(&mut self, turn: &Turn<'_>) -> Result<Value, Failed> {
+        let number = |name: &str| turn.arguments.get(name).and_then(Value::as_u64).unwrap_or(0);
+        let (reference, start) = (number("variablesReference"), number("start") as u32);
+        let count = match number("count") {
+            0 => ROWS,
+            count => count.min(u64::from(ROWS)) as u32,
+        };
+        let run = self.running_mut()?;
+        let index = (reference as usize).checked_sub(1);
+        let handle = index.and_then(|index| run.handles.get(index)).cloned();
+        let handle = handle.ok_or("the run has moved since this value was shown")?;
+        let rows = match handle {
+            Handle::Group(variables, returned) => run.group_rows(&variables, returned)?,
+            Handle::Part(part) => {
+                let parts = part.parts(start, count);
+                if parts.is_empty() {
+                    let value = part.read(&run.replay.seen());
+                    value.scalars.first().map_or(Vec::new(), number_rows)
+                } else {
+                    let rows = parts.into_iter().map(|(name, part)| run.part_row(&name, part));
+                    rows.collect::<Result<_, _>>()?
+                }
+            }
+            Handle::Value(value) => {
+                let rows = value.parts().into_iter();
+                rows.map(|(name, value)| run.value_row(&name, value)).collect::<Result<_, _>>()?
+            }
+            Handle::Number(scalar) => number_rows(&scalar),
+            Handle::Marks => run.mark_rows(),
+        };
+        Ok(json!({ "variables": rows }))
+    }
+
+    pub fn evaluate(&mut self, turn: &Turn<'_>) -> Result<Value, Failed> {
+        let text = turn.arguments.get("expression").and_then(Value::as_str).unwrap_or_default();
+        let frame = turn.arguments.get("frameId").and_then(Value::as_i64);
+        let run = self.running_mut()?;
+        let mut row = run.expression_row(text.trim(), frame)?;
+        let value = row["value"].take();
+        if let Some(row) = row.as_object_mut() {
+            row.remove("value");
+            row.remove("name");
+            row.insert("result".to_owned(), value);
+        }
+        Ok(row)
+    }
+}
+
+/// A scope: its name, its hint, what it has, and how much.
+type Scope = (&'static str, &'static str, Handle, usize);
+
+impl Running {
+    /// The frame of a number; without one the innermost.
+    fn frame(&self, id: Option<i64>) -> Result<(usize, Frame), Failed> {
+        let frames = self.replay.seen().place.frames();
+        let depth = match id {
+            Some(id) => usize::try_from(id - 1).ok(),
+            None => frames.len().checked_sub(1),
+        };
+        let found = depth.and_then(|depth| Some((depth, frames.get(depth)?.clone())));
+        found.ok_or_else(|| "the stack has no such frame".to_owned())
+    }
+
+    fn scopes_of(&self, id: i64) -> Result<Vec<Scope>, Failed> {
+        let (depth, frame) = self.frame(Some(id))?;
+        let (subject, place) = (self.replay.subject(), self.replay.seen().place);
+        let visible = subject.visible(frame.function, frame.statement);
+        let of = |kinds: &[VariableKind]| -> Vec<usize> {
+            let kind = |index: usize| subject.program.variables().get(index).map(|one| one.kind);
+            let all = visible.iter().copied();
+            all.filter(|index| kind(*index).is_some_and(|kind| kinds.contains(&kind))).collect()
+        };
+        let is_top = depth + 1 == place.depth();
+        let returned = match place.halt() {
+            Halt::Returned(function) if is_top => Some(*function),
+            Halt::End if is_top => Some(frame.function),
+            _ => None,
+        };
+        let result = returned.and_then(|function| {
+            let variables = subject.variables_of(function);
+            { variables }.find(|(_, one)| one.kind == VariableKind::Result).map(|(index, _)| index)
+        });
+        let mut scopes = Vec::new();
+        let mut add = |name, hint, variables: Vec<usize>, result: Option<usize>| {
+            let count = variables.len() + usize::from(result.is_some());
+            if count > 0 {
+                scopes.push((name, hint, Handle::Group(variables, result), count));
+            }
+        };
+        add("Locals", "locals", of(&[VariableKind::Let, VariableKind::Var]), result);
+        add("Parameters", "arguments", of(&[VariableKind::Parameter]), None);
+        add("Module", "globals", of(&[VariableKind::Private]), None);
+        add("Uniforms and buffers", "globals", of(&[VariableKind::Buffer]), None);
+        let marks = place.marks().len();
+        if marks > 0 {
+            scopes.push(("Marks", "marks", Handle::Marks, marks));
+        }
+        Ok(scopes)
+    }
+
+    /// A number by which the client may ask for something.
+    fn handle(&mut self, handle: Handle) -> Result<usize, Failed> {
+        if self.handles.len() >= MOST {
+            return Err(format!("more than {MOST} values were asked for here"));
+        }
+        self.handles.push(handle);
+        Ok(self.handles.len())
+    }
+
+    fn group_rows(&mut self, all: &[usize], returned: Option<usize>) -> Result<Vec<Value>, Failed> {
+        let mut rows = Vec::new();
+        for (index, is_result) in
+            returned.into_iter().map(|index| (index, true)).chain(all.iter().map(|at| (*at, false)))
+        {
+            let subject = self.replay.subject();
+            let Some(variable) = subject.program.variables().get(index) else { continue };
+            let (shape, place) = (variable.shape.clone(), variable.place);
+            let mut path = variable.name.clone();
+            let name = match (is_result, variable.function) {
+                (true, Some(function)) => {
+                    path.clear();
+                    format!("{}() returned", subject.name_of(function).name)
+                }
+                _ => path.clone(),
+            };
+            rows.push(self.part_row(&name, Part { path, shape, place, first: 0 })?);
+        }
+        Ok(rows)
+    }
+
+    fn part_row(&mut self, name: &str, part: Part) -> Result<Value, Failed> {
+        let value = part.read(&self.replay.seen());
+        let type_name = self.type_name(&part.shape);
+        let mut row = json!({
+            "name": name, "value": shown(&value, &type_name), "type": type_name,
+            "presentationHint": { "attributes": ["readOnly"] },
+        });
+        if !part.path.is_empty() {
+            row["evaluateName"] = json!(part.path);
+        }
+        if let Shape::Array(count, _) = part.shape {
+            row["indexedVariables"] = json!(count);
+        }
+        let is_leaf = matches!(part.shape, Shape::Scalar(kind) if kind != SlotKind::Float);
+        let reference = if is_leaf { 0 } else { self.handle(Handle::Part(part))? };
+        row["variablesReference"] = json!(reference);
+        Ok(row)
+    }
+
+    fn value_row(&mut self, name: &str, value: Traced) -> Result<Value, Failed> {
+        let type_name = self.type_name(&value.shape);
+        let text = shown(&value, &type_name);
+        let reference = match (&value.shape, value.scalars.first()) {
+            (Shape::Scalar(SlotKind::Float), Some(scalar)) => {
+                self.handle(Handle::Number(*scalar))?
+            }
+            (Shape::Scalar(_), _) => 0,
+            _ => self.handle(Handle::Value(value))?,
+        };
+        Ok(json!({
+            "name": name, "value": text, "type": type_name, "variablesReference": reference,
+            "presentationHint": { "attributes": ["readOnly"] },
+        }))
+    }
+
+    fn type_name(&self, shape: &Shape) -> String {
+        self.replay.subject().type_name(shape).unwrap_or_else(|| "struct".to_owned())
+    }
+
+    fn mark_rows(&self) -> Vec<Value> {
+        let row = |marked: &Marked| {
+            let subject = self.replay.subject();
+            let statement = marked.statement.and_then(|id| subject.statements.get(id));
+            let span = statement.map(|one| one.span).or(subject.name_of(marked.function).span);
+            let place = span.map_or(String::new(), |span| {
+                let line = self.sources.position(span.source, span.start as usize).0;
+                format!("{}:{line}", self.sources.get(span.source).path)
+            });
+            json!({
+                "name": place, "value": marked.mark.text(), "type": marked.mark.name(),
+                "variablesReference": 0,
+            })
+        };
+        self.replay.seen().place.marks().iter().map(row).collect()
+    }
+
+    /// The row of an expression in a frame: a variable and its parts, or what WGSL makes of it.
+    fn expression_row(&mut self, text: &str, frame: Option<i64>) -> Result<Value, Failed> {
+        let (_, frame) = self.frame(frame)?;
+        let subject = self.replay.subject();
+        let end = text.find(['.', '[']).unwrap_or(text.len());
+        let visible = subject.visible(frame.function, frame.statement);
+        let variables = subject.program.variables();
+        let named = visible.iter().filter_map(|index| variables.get(*index));
+        let part = { named }.find(|one| one.name == text[..end].trim()).and_then(|one| {
+            let (path, shape, place) = (one.name.clone(), one.shape.clone(), one.place);
+            Part { path, shape, place, first: 0 }.follow(&text[end..])
+        });
+        if let Some(part) = part {
+            return self.part_row("", part);
+        }
+        let Self { replay, expressions, .. } = self;
+        let value = expressions.value(&replay.seen(), (frame.function, frame.statement), text)?;
+        self.value_row("", value)
+    }
+}
