@@ -23,6 +23,7 @@ mod command_line;
 mod compute;
 mod conventions;
 mod cost;
+mod dap;
 mod debug;
 mod described;
 mod determinism;
@@ -89,6 +90,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     compute::tests,
     conventions::tests,
     cost::tests,
+    dap::tests,
     debug::tests,
     described::tests,
     determinism::tests,

@@ -21,10 +21,11 @@ impl Session {
 }
 
 impl Running {
-    /// Where a frame is: its statement, or the head of its function.
+    /// Where a frame is: its statement, the loop that begins a turn, or the head of its function.
     fn span_of(&self, frame: &Frame) -> Option<Span> {
         let subject = self.replay.subject();
-        let statement = frame.statement.and_then(|id| subject.statements.get(id));
+        let statement = frame.statement.or(frame.loops.last().and_then(|one| one.statement));
+        let statement = statement.and_then(|id| subject.statements.get(id));
         statement.map(|one| one.span).or_else(|| subject.name_of(frame.function).span)
     }
 

@@ -1,1 +1,5 @@
+//! Conversations with the adapter about small texts.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 mod session;

@@ -86,7 +86,7 @@ impl Subject {
         if let Some(error) = &signature.error {
             return Err(diagnosed(error, text.map));
         }
-        let statements = Statements::new(&program, text.map, text.sources);
+        let statements = Statements::new(&program, text.text, text.map, text.sources);
         let names = function_names(text);
         let documented = documented_parameters(text.text);
         Ok(Self {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use lamplight_compose::SourceMap;
 use lamplight_diagnostic::source::{SourceId, SourceSet, Span};
-use lamplight_eval::Program;
+use lamplight_eval::{Program, VariableKind, VariablePlace};
 
 /// Index of a statement in [`Statements`].
 pub type StatementId = u32;
@@ -33,12 +33,22 @@ pub struct Statements {
 
 impl Statements {
     /// Finds the statements of a program, in the text that `map` leads back from.
-    pub fn new(program: &Program, map: &SourceMap, sources: &SourceSet) -> Self {
+    pub fn new(program: &Program, text: &str, map: &SourceMap, sources: &SourceSet) -> Self {
         let mut finder =
             Finder { map, sources, cuts: BTreeMap::new(), known: BTreeMap::new(), all: Vec::new() };
-        let of_code = program.spans().iter().map(|span| finder.find(*span)).collect();
+        let mut of_code: Vec<_> = program.spans().iter().map(|span| finder.find(*span)).collect();
         let variables = program.variables().iter();
-        let of_variables = variables.map(|variable| finder.find(variable.span)).collect();
+        let mut of_variables: Vec<_> =
+            variables.map(|variable| finder.find(variable.span)).collect();
+        for (index, at) in plain_lets(program, text, map) {
+            let found = finder.find(at);
+            of_variables[index] = found;
+            let place = program.variables()[index].place;
+            let VariablePlace::At { slot, stride: _ } = place else { continue };
+            if let Some(code) = program.copy_to(slot).and_then(|pc| of_code.get_mut(pc as usize)) {
+                *code = found;
+            }
+        }
         let begins = program.beginnings().into_iter().zip(&of_code);
         let running = begins
             .filter_map(|(begins, at): (bool, &Option<StatementId>)| at.filter(|_| begins))
@@ -85,6 +95,62 @@ impl Statements {
     pub fn all(&self) -> &[Statement] {
         &self.all
     }
+}
+
+/// The places of `let` statements that only name what a variable has: naga gives what they read no
+/// place. Each with the number of its variable.
+fn plain_lets(program: &Program, text: &str, map: &SourceMap) -> Vec<(usize, naga::Span)> {
+    let mut found: Vec<(usize, naga::Span)> = Vec::new();
+    for (index, variable) in program.variables().iter().enumerate() {
+        let is_plain = variable.kind == VariableKind::Let && !variable.span.is_defined();
+        let function = variable.function.and_then(|id| program.signature(id));
+        let Some(function) = function.filter(|_| is_plain) else { continue };
+        let Some(body) = body_of(text, &function.name) else { continue };
+        // Several of one name are in the order of the text; those with a place are known.
+        let own = program
+            .variables()
+            .iter()
+            .filter(|other| (other.function, &other.name) == (variable.function, &variable.name));
+        let known: Vec<usize> =
+            own.filter_map(|other| Some(other.span.to_range()?.start)).collect();
+        let place = lets_named(text, body, &variable.name).into_iter().find(|at| {
+            let end = at + text[*at..].find(';').unwrap_or(0);
+            let span = naga::Span::new(*at as u32, end as u32);
+            !known.iter().any(|start| (*at..end).contains(start))
+                && !found.iter().any(|(_, other)| *other == span)
+                && map.lookup(*at..end).is_some()
+        });
+        if let Some(at) = place {
+            let end = at + text[at..].find(';').unwrap_or(0);
+            found.push((index, naga::Span::new(at as u32, end as u32)));
+        }
+    }
+    found
+}
+
+/// The text of a function.
+fn body_of(text: &str, name: &str) -> Option<Range<usize>> {
+    let head = format!("fn {name}(");
+    let start = text.find(&head)?;
+    let open = start + text[start..].find('{')?;
+    let rest = &text[start + head.len()..];
+    let end = rest.find("\nfn ").map_or(text.len(), |end| start + head.len() + end);
+    Some(open..end)
+}
+
+/// Where `let` gives a name in a part of a text.
+fn lets_named(text: &str, part: Range<usize>, name: &str) -> Vec<usize> {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut found = Vec::new();
+    for (at, _) in text[part.clone()].match_indices("let ") {
+        let at = part.start + at;
+        let rest = text[at + 4..].trim_start();
+        let after = rest.strip_prefix(name).filter(|after| !after.starts_with(is_word));
+        if after.is_some() && !text[..at].ends_with(is_word) {
+            found.push(at);
+        }
+    }
+    found
 }
 
 /// Finds statements by places in the text that naga parsed.

@@ -213,6 +213,19 @@ impl Program {
         after.checked_sub(1).map(|index| FunctionId(index as u32))
     }
 
+    /// The instruction without a place in the text that copies a value to a slot.
+    pub fn copy_to(&self, slot: u32) -> Option<u32> {
+        let copies = |(instruction, span): (&Instruction, &Span)| {
+            let to = match instruction {
+                Instruction::Copy { to, .. } | Instruction::Load { to, .. } => *to,
+                _ => return false,
+            };
+            to == slot && !span.is_defined()
+        };
+        let found = self.code.iter().zip(&self.spans).position(copies);
+        found.map(|pc| pc as u32)
+    }
+
     /// The function that has an instruction.
     pub fn function_around(&self, pc: u32) -> Option<FunctionId> {
         self.function_at(pc)

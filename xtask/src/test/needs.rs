@@ -11,6 +11,7 @@ const OF_GROUPS: &[(&str, &[&str])] = &[
     ("bounds", VALIDATORS),
     ("catalogue", &[]),
     ("conventions", VALIDATORS),
+    ("dap", &["nodejs", "npm"]),
     ("determinism", &[]),
     ("diagnostics", &[]),
     ("differential", &[]),
