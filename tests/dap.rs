@@ -20,6 +20,7 @@ pub fn tests() -> Vec<Trial> {
         Trial::test("dap::no_conversation", no_conversation),
         Trial::test("dap::a_long_run_is_paused", long_run),
         Trial::test("dap::a_call", call),
+        Trial::test("dap::picture", picture),
     ]
 }
 
@@ -256,4 +257,35 @@ fn call() -> Outcome {
         return Err(format!("{top} is {shown:?}").into());
     }
     adapter.close()
+}
+
+/// The panel of the extension for Visual Studio Code draws a file with the options of its launch, and
+/// a click starts a session for the pixel.
+fn picture() -> Outcome {
+    let output = Command::new("node")
+        .arg(folder().join("picture.cjs"))
+        .arg(LAMPLIGHT)
+        .arg(folder())
+        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("editors/vscode"))
+        .output()
+        .map_err(|error| format!("node: {error}; install it with: apt-get install nodejs"))?;
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    let did: Value =
+        serde_json::from_slice(&output.stdout).map_err(|error| format!("{error}: {errors}"))?;
+    let expected = json!({
+        "type": "lamplight", "request": "launch", "name": "main.wesl", "stopOnEntry": true,
+        "program": folder().join("main.wesl"), "size": [64, 48], "uniform": { "power": 2 },
+        "cwd": folder(), "pixel": [2, 47],
+    });
+    // Width and height as the picture's own head has them.
+    let size = format!("{:08x}{:08x}", 64, 48);
+    let is_right = did["launch"] == expected
+        && did["pixels"] == json!([[2, 47], [63, 47]])
+        && did["size"] == size.as_str()
+        && did["page"] == true;
+    let said = did["errors"][0].as_str().unwrap_or_default();
+    match is_right && said.contains("`{` is never closed") {
+        true => Ok(()),
+        false => Err(format!("{did:#}").into()),
+    }
 }

@@ -1,6 +1,7 @@
-// Starts `lamplight lsp`, and adds the choice of a permutation.
+// Starts `lamplight lsp` and `lamplight dap`, and adds the choice of a permutation and pictures.
 const vscode = require('vscode');
 const { LanguageClient } = require('vscode-languageclient/node');
+const { showPicture } = require('./picture');
 
 let client;
 
@@ -39,6 +40,11 @@ async function show(uri = here()) {
   await vscode.window.showTextDocument(document, vscode.ViewColumn.Beside);
 }
 
+async function picture(command) {
+  const uri = here();
+  if (uri) await showPicture(command, vscode.Uri.parse(uri).fsPath);
+}
+
 exports.activate = async (context) => {
   const command = vscode.workspace.getConfiguration('lamplight').get('command');
   const documentSelector = [
@@ -56,6 +62,10 @@ exports.activate = async (context) => {
   context.subscriptions.push(
     vscode.commands.registerCommand('lamplight.choose', choose),
     vscode.commands.registerCommand('lamplight.show', () => show()),
+    vscode.commands.registerCommand('lamplight.picture', () => picture(command)),
+    vscode.debug.registerDebugAdapterDescriptorFactory('lamplight', {
+      createDebugAdapterDescriptor: () => new vscode.DebugAdapterExecutable(command, ['dap']),
+    }),
   );
   await client.start();
 };

@@ -125,9 +125,11 @@ pub fn vscode() -> Outcome {
         let name = command["command"].as_str().ok_or("no name")?;
         expect(code.contains(&format!("registerCommand('{name}'")), &name)?;
     }
-    for expected in ["lamplight/permutation", "lamplight.composed", "args: ['lsp']"] {
+    let adapter = "DebugAdapterExecutable(command, ['dap'])";
+    for expected in ["lamplight/permutation", "lamplight.composed", "args: ['lsp']", adapter] {
         expect(code.contains(expected), &expected)?;
     }
+    debugger(contributes)?;
     for grammar in contributes["grammars"].as_array().ok_or("no grammars")? {
         let file = grammar["path"].as_str().ok_or("no path")?;
         let text: Value = serde_json::from_str(&read(&format!("editors/vscode/{file}"))?)?;
@@ -135,6 +137,33 @@ pub fn vscode() -> Outcome {
         check_grammar(&text, &text["repository"])?;
     }
     Ok(())
+}
+
+/// What a launch may say is what the adapter reads, and the snippets say nothing else.
+fn debugger(contributes: &Value) -> Outcome {
+    let debugger = &contributes["debuggers"][0];
+    expect(
+        debugger["type"] == "lamplight" && words(&debugger["languages"]) == languages(),
+        debugger,
+    )?;
+    let launch = &debugger["configurationAttributes"]["launch"];
+    let named = launch["properties"].as_object().ok_or("no attributes")?;
+    let adapter = read("src/cli/dap.rs")? + &read("crates/dap/src/session.rs")?;
+    for name in named.keys() {
+        expect(adapter.contains(&format!("\"{name}\"")), name)?;
+    }
+    let all = debugger["initialConfigurations"].as_array().ok_or("no configurations")?;
+    let snippets = debugger["configurationSnippets"].as_array().ok_or("no snippets")?;
+    for body in all.iter().chain(snippets.iter().map(|snippet| &snippet["body"])) {
+        expect(body["type"] == "lamplight" && body["request"] == "launch", body)?;
+        for name in body.as_object().ok_or("no object")?.keys() {
+            let is_own = ["type", "request", "name"].contains(&name.as_str());
+            expect(is_own || named.contains_key(name), name)?;
+        }
+    }
+    let broken = contributes["breakpoints"].as_array().ok_or("no breakpoints")?;
+    let broken = broken.iter().filter_map(|one| one["language"].as_str().map(str::to_owned));
+    expect(broken.collect::<BTreeSet<_>>() == languages(), contributes)
 }
 
 /// The commands of the guide make a `.vsix`, with the grammar and the client that the code needs.
@@ -162,6 +191,7 @@ pub fn vsix() -> Outcome {
     // The names of files are plain in an archive of this kind.
     for file in [
         "extension.js",
+        "picture.js",
         "package.json",
         "language-configuration.json",
         "syntaxes/wesl.tmLanguage.json",

@@ -41,6 +41,7 @@ mod controls;
 pub mod figure;
 pub mod frame;
 pub mod gallery;
+mod heat;
 mod lamps;
 mod light;
 mod mesh;
@@ -58,6 +59,7 @@ mod textures;
 mod values;
 
 pub use controls::{Controls, LampControl, Uniform, picture_controls};
+pub use heat::{HeatMap, Scale, short as short_number};
 pub use needs::Needs;
 pub use passes::prepare_passes;
 pub use pixels::{Linear, Picture, is_own_png};

@@ -83,11 +83,11 @@ impl PreparedPass {
         painter.draw_frames(&drawing).map_err(|problem| vec![problem])
     }
 
-    fn items(&self) -> Vec<DrawItem<'_>> {
+    pub(super) fn items(&self) -> Vec<DrawItem<'_>> {
         self.items.iter().map(|(mesh, buffers)| DrawItem { mesh, buffers }).collect()
     }
 
-    fn drawing<'d>(
+    pub(super) fn drawing<'d>(
         &'d self,
         items: &'d [DrawItem<'d>],
         views: &'d [Buffers],

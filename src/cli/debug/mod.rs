@@ -49,8 +49,18 @@ fn parse_percent(text: &str) -> Result<f64, String> {
 }
 
 /// The options of `render` that are about files of pictures.
-const ABOUT_FILES: [&str; 9] =
-    ["all", "comparisons", "beside", "output", "samples", "force", "watch", "terminal", "exposure"];
+const ABOUT_FILES: [&str; 10] = [
+    "all",
+    "comparisons",
+    "beside",
+    "show",
+    "output",
+    "samples",
+    "force",
+    "watch",
+    "terminal",
+    "exposure",
+];
 
 /// The command line, in whose help `debug` has no options about files of pictures.
 pub fn without_files(command: clap::Command) -> clap::Command {

@@ -1,6 +1,7 @@
 //! `lamplight render`: pictures.
 
 mod gallery;
+mod heat;
 mod model;
 mod own;
 mod several;
@@ -96,6 +97,12 @@ pub struct Arguments {
     /// Radiance file (`.hdr`) [default: that of the scene, else `studio`].
     #[arg(long, value_name = "NAME|FILE")]
     environment: Option<String>,
+    /// Show a number of each pixel, with a scale, in the place of its colour: `nan`, `error` (the bound
+    /// that WGSL allows), `iterations` of loops, `cost` in steps of `eval`, `branches`, or the last
+    /// value of a variable such as `n` or `n.x`.
+    #[arg(long, value_name = "WHAT", conflicts_with_all = ["all", "comparisons", "beside", "samples",
+        "exposure"])]
+    show: Option<String>,
     #[command(flatten)]
     overwrite: Overwrite,
     #[command(flatten)]
@@ -156,6 +163,7 @@ impl Arguments {
             (self.all, "--all"),
             (self.comparisons, "--comparisons"),
             (self.beside, "--beside"),
+            (self.show.is_some(), "--show"),
             (self.output.is_some(), "--out"),
             (self.samples.is_some(), "--samples"),
             (self.overwrite.replace() == output::Replace::Any, "--force"),
@@ -201,6 +209,9 @@ pub fn run_render(arguments: Arguments, form: DiagnosticForm) -> Result<(), Fail
 }
 
 fn draw_picture(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    if let Some(show) = &arguments.show {
+        return heat::draw_heat(arguments, show, form);
+    }
     let entry = chosen_executor(arguments)?;
     let shot = make_shot(arguments, entry)?;
     if let Some(file) = own::own_file(arguments) {

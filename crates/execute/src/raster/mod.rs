@@ -9,6 +9,7 @@
 //! afterwards, in the order of the triangles.
 
 mod evaluated;
+mod measured;
 mod metal;
 mod pixel;
 mod triangles;
@@ -21,6 +22,7 @@ use lamplight_diagnostic::Diagnostic;
 use lamplight_eval as eval;
 use lamplight_eval::{Filter, MipLevel, Number, Resources};
 use lamplight_validate::inner_blocks;
+pub use measured::{Measure, Measured, Measuring};
 pub use metal::CompiledStages;
 use naga::{Binding, Block, BuiltIn, FunctionResult, Module, ShaderStage, Statement, TypeInner};
 pub use pixel::{PixelFragment, fragments_at};

@@ -46,6 +46,7 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_emit::reflect;
 use lamplight_execute::Session;
 use lamplight_execute::frame::{Buffers, Mesh, PipelineState};
+use lamplight_execute::raster::Measure;
 use lamplight_scenes::sets::{Object, Scene, TextureMap};
 
 use self::around::{Around, around_of};
@@ -55,6 +56,7 @@ use self::inputs::{Hint, Source, attribute_source, input_source};
 use self::shape::{NumberType, short_type};
 use self::table::{Origin, Row, RowKind};
 use crate::frame::{ReadyStage, Stages};
+use crate::heat::HeatMap;
 use crate::mesh::object_mesh;
 use crate::pixels::Background;
 use crate::prepared::{PictureFragment, PreparedPass};
@@ -217,6 +219,15 @@ impl OwnPicture {
     pub fn take(&self, painter: &dyn Session, shot: &Shot) -> Result<Picture, Diagnostics> {
         let picture = self.pass.photograph(painter, shot)?.develop();
         Ok(if self.is_upside_down { picture.upside_down() } else { picture })
+    }
+
+    /// Measures the fragment that each pixel shows.
+    ///
+    /// # Errors
+    /// Those of [`PreparedPass::measure`].
+    pub fn measure(&self, measure: &Measure, shot: &Shot) -> Result<HeatMap, Diagnostics> {
+        let map = self.pass.measure(measure, shot)?;
+        Ok(if self.is_upside_down { map.upside_down() } else { map })
     }
 
     /// The fragments that cover a pixel of the picture, the visible one first.
