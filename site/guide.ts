@@ -1,4 +1,6 @@
 // The pages of the repository's guide as HTML, made when the site is built.
+import { readFileSync } from "node:fs";
+import { dirname, join } from "node:path";
 import { Marked, type Tokens } from "marked";
 import type { Plugin } from "vite";
 
@@ -17,7 +19,12 @@ function rewritten(href: string, page: string): string {
     return `#/guide/${name}${heading ? `/${heading}` : ""}`;
 }
 
-export function page(text: string, name: string): string {
+/** A picture beside the pages, as a part of the page. */
+function picture(path: string): string {
+    return `data:image/png;base64,${readFileSync(path).toString("base64")}`;
+}
+
+export function page(text: string, name: string, folder: string): string {
     const marked = new Marked({ gfm: true });
     marked.use({
         renderer: {
@@ -26,6 +33,9 @@ export function page(text: string, name: string): string {
             },
             link({ href, tokens }: Tokens.Link) {
                 return `<a href="${escaped(rewritten(href, name))}">${this.parser.parseInline(tokens)}</a>`;
+            },
+            image({ href, text }: Tokens.Image) {
+                return `<img src="${picture(join(folder, href))}" alt="${escaped(text)}">`;
             },
             code({ text, lang }: Tokens.Code) {
                 const label = (lang ?? "").split(" ")[0] || "text";
@@ -48,7 +58,7 @@ export const guide: Plugin = {
     transform(text, id) {
         const found = /([^/]+)\.(md|sh)$/.exec(id);
         if (!found) return undefined;
-        const html = found[2] === "md" ? page(text, found[1]) : `<h1>${found[1]}.sh</h1><pre tabindex="0" role="group" aria-label="${found[1]}.sh"><code>${escaped(text)}</code></pre>`;
+        const html = found[2] === "md" ? page(text, found[1], dirname(id)) : `<h1>${found[1]}.sh</h1><pre tabindex="0" role="group" aria-label="${found[1]}.sh"><code>${escaped(text)}</code></pre>`;
         return { code: `export default ${JSON.stringify(html)};`, map: null };
     },
 };

@@ -26,7 +26,7 @@ const PROGRAMS: u32 = 200;
 const DAILY: u32 = 10;
 
 /// The executors that run the module itself, and those of the outputs that ship.
-const MODULES: [&str; 2] = ["eval", "vulkan"];
+const MODULES: [&str; 3] = ["eval", "vulkan", "gl"];
 const SHIPPED: [&str; 6] = ["spirv", "hlsl", "msl", "glsl", "glsl330", "essl300"];
 
 pub fn tests() -> Vec<Trial> {

@@ -38,6 +38,7 @@ mod glsl_values;
 mod glslang;
 mod guide;
 mod harness;
+mod heat;
 mod hostile;
 mod keys;
 mod library;
@@ -103,6 +104,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     generate::tests,
     guide::tests,
     harness::tests,
+    heat::tests,
     hostile::tests,
     keys::tests,
     library::tests,

@@ -6,8 +6,8 @@ use lamplight_bundle::Language;
 use lamplight_compose::resolve::{self, Packages};
 use lamplight_compose::{self as compose, Composed, Keep};
 use lamplight_debug::{
-    Call, Event, Mark, Options, Outcome, Step, Subject, SubjectText, Table, Why, WhyError, record,
-    why,
+    Call, Event, Found, Halt, Mark, Options, Outcome, Replay, Seen, Step, Subject, SubjectText,
+    Table, Why, WhyError, record, why,
 };
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_eval::{FindingKind, Resources};
@@ -261,4 +261,41 @@ Marked:
       outside the domain: the root of a negative number; WGSL leaves the result open
 ";
     assert_eq!(given(text, &[-4.0]).table(), expected);
+}
+
+/// A long loop is held in few copies, and steps back from its end lead through its last turns.
+#[test]
+fn a_long_loop_goes_back() {
+    let text = "fn f(x: f32) -> f32 {\n    var sum = x;\n    for (var i = 0; i < 60000; i++) {\n        \
+                sum += 1.0;\n    }\n    return sum;\n}\n";
+    let Given { sources: _, subject } = given(text, &[1.0]);
+    let mut replay = Replay::new(subject, 0.01).unwrap();
+    let line = |seen: &Seen<'_>| {
+        let statement = seen.place.statement().and_then(|id| seen.subject.statements.get(id));
+        statement.map_or(0, |one| one.line)
+    };
+    let found = replay.forward(&mut |seen| line(seen) == 6, &|| false);
+    assert_eq!((found, line(&replay.seen())), (Found::Yes, 6));
+    assert!((8..200).contains(&replay.copies()), "{}", replay.copies());
+    let end = replay.seen().place.clock();
+    let mut lines = Vec::new();
+    for _ in 0..5 {
+        assert_eq!(replay.back(&mut |_| true, &|| false), Found::Yes);
+        lines.push(line(&replay.seen()));
+    }
+    assert_eq!(lines, [3, 3, 4, 3, 3]);
+    assert_eq!(replay.seen().place.clock(), end - 5);
+    // Forth again to the same place, and to the end.
+    let found = replay.forward(&mut |seen| line(seen) == 6, &|| false);
+    assert_eq!((found, replay.seen().place.clock()), (Found::Yes, end));
+    assert_eq!(replay.forward(&mut |_| false, &|| false), Found::No);
+    assert_eq!(*replay.seen().place.halt(), Halt::End);
+    // To the tenth turn, from the end.
+    let tenth = |seen: &Seen<'_>| {
+        line(seen) == 4 && seen.place.statement().is_some_and(|id| seen.place.runs(id) == 10)
+    };
+    assert_eq!(replay.back(&mut |seen| tenth(seen), &|| false), Found::Yes);
+    assert!(tenth(&replay.seen()));
+    // Nobody is asked for less than some thousand instructions.
+    assert_eq!(replay.forward(&mut |_| false, &|| true), Found::Interrupted);
 }

@@ -17,6 +17,7 @@ const OF_GROUPS: &[(&str, &[&str])] = &[
     ("differential", &[]),
     ("emit", VALIDATORS),
     ("energy", &[]),
+    ("heat", &[]),
     ("hostile", &[]),
     ("keys", &["nodejs"]),
     ("migrate", &[]),

@@ -286,63 +286,65 @@ impl<N: Number> Observer<N> for Counter {
 /// The variable that a name such as `n`, `n.x` or `lamp.position` means: in the stage, else in any
 /// function, else of the module.
 fn find(program: &Program, stage: FunctionId, asked: &str) -> Result<Asked, Diagnostic> {
-    let (name, path) = match asked.split_once('.') {
-        Some((name, path)) => (name, Some(path)),
-        None => (asked, None),
-    };
+    let (name, path) = asked.split_once('.').unwrap_or((asked, ""));
     let all = program.variables();
     let is_named = |one: &&Variable| one.name == name && one.kind != VariableKind::Result;
     let own = |one: &&Variable| is_named(one) && one.function == Some(stage);
     let found = all.iter().rev().find(own).or_else(|| all.iter().rev().find(is_named));
-    let refused = |message: String, help: String| {
-        Diagnostic::error(codes::PICTURE_INVALID, message).note(format!("help: {help}"))
-    };
-    let variable = found.ok_or_else(|| {
-        let mut names: Vec<&str> = all.iter().map(|one| one.name.as_str()).collect();
-        names.retain(|name| *name != "return");
-        names.sort_unstable();
-        names.dedup();
-        let known = names.iter().copied().chain(Measure::WORDS);
-        let help = match nearest_name(name, known.clone()) {
-            Some(nearest) => format!("did you mean `{nearest}`?"),
-            None => format!("there are {}", known.collect::<Vec<_>>().join(", ")),
-        };
-        refused(format!("no variable of the shader is named `{name}`"), help)
-    })?;
-    let (mut shape, mut first) = (&variable.shape, 0);
-    let part = |kind: SlotKind| Shape::Scalar(kind);
-    let scalar;
-    for word in path.into_iter().flat_map(|path| path.split('.')) {
-        let none = || {
-            refused(format!("`{name}` has no `{word}`"), "members and components have names".into())
-        };
-        match shape {
-            Shape::Vector(count, kind) if path.is_some_and(|path| path.ends_with(word)) => {
-                let at = ["xyzw", "rgba"].into_iter().find_map(|names| names.find(word));
-                let at =
-                    at.filter(|at| word.len() == 1 && *at < *count as usize).ok_or_else(none)?;
-                first += at as u32;
-                scalar = part(*kind);
-                shape = &scalar;
-                break;
-            }
-            Shape::Struct(members) => {
-                let at = members.iter().position(|(known, _)| known == word).ok_or_else(none)?;
-                first += members[..at].iter().map(|(_, shape)| shape.scalars()).sum::<u32>();
-                shape = &members[at].1;
-            }
-            _ => return Err(none()),
-        }
-    }
+    let variable = found.ok_or_else(|| unknown(program, name))?;
+    let (first, shape) = follow(name, &variable.shape, path)?;
     let (count, kind) = match shape {
-        Shape::Scalar(kind) => (1, *kind),
-        Shape::Vector(count, kind) => ((*count).min(3), *kind),
+        Shape::Scalar(kind) => (1, kind),
+        Shape::Vector(count, kind) => (count.min(3), kind),
         _ => {
-            let help = "name a number or a vector in it, such as `lamp.position`".to_owned();
+            let help = "name a number or a vector in it, such as `lamp.position`";
             return Err(refused(format!("`{asked}` is no number and no vector"), help));
         }
     };
     let is_given = variable.function.is_none()
         || (variable.function == Some(stage) && variable.kind == VariableKind::Parameter);
     Ok(Asked { place: variable.place, first, count, kind, is_given })
+}
+
+fn refused(message: String, help: &str) -> Diagnostic {
+    Diagnostic::error(codes::PICTURE_INVALID, message).note(format!("help: {help}"))
+}
+
+fn unknown(program: &Program, name: &str) -> Diagnostic {
+    let mut names: Vec<&str> = program.variables().iter().map(|one| one.name.as_str()).collect();
+    names.retain(|name| *name != "return" && !name.starts_with("lamplight_"));
+    names.sort_unstable();
+    names.dedup();
+    let known = names.iter().copied().chain(Measure::WORDS);
+    let help = match nearest_name(name, known.clone()) {
+        Some(nearest) => format!("did you mean `{nearest}`?"),
+        None => format!("there are {}", known.collect::<Vec<_>>().join(", ")),
+    };
+    refused(format!("no variable of the shader is named `{name}`"), &help)
+}
+
+/// The first scalar and the shape of the part that a path such as `position.x` leads to.
+fn follow(name: &str, shape: &Shape, path: &str) -> Result<(u32, Shape), Diagnostic> {
+    let (mut shape, mut first) = (shape.clone(), 0);
+    for word in path.split('.').filter(|word| !word.is_empty()) {
+        let none = || {
+            let help = "members and components have names, such as `.position.x`";
+            refused(format!("`{name}` has no `{word}`"), help)
+        };
+        shape = match &shape {
+            Shape::Vector(count, kind) => {
+                let at = ["xyzw", "rgba"].into_iter().find_map(|names| names.find(word));
+                let at = at.filter(|at| word.len() == 1 && *at < *count as usize);
+                first += at.ok_or_else(none)? as u32;
+                Shape::Scalar(*kind)
+            }
+            Shape::Struct(members) => {
+                let at = members.iter().position(|(known, _)| known == word).ok_or_else(none)?;
+                first += members[..at].iter().map(|(_, shape)| shape.scalars()).sum::<u32>();
+                members[at].1.clone()
+            }
+            _ => return Err(none()),
+        };
+    }
+    Ok((first, shape))
 }
