@@ -7,7 +7,9 @@ use super::{axes, lists, names};
 use crate::axis::Axis;
 use crate::space::{Constraint, SliceLists, Space, TooComplex};
 use crate::{lint, report};
-use lamplight_bundle::{BoundsChecks, ClipConvention, Convention, Conventions, SourceClip, Target};
+use lamplight_bundle::{
+    BoundsChecks, ClipConvention, Convention, Conventions, SourceClip, SpirvForm, Target,
+};
 use lamplight_diagnostic::source::{LIMITS, Span};
 use lamplight_diagnostic::{Diagnostic, Severity, codes};
 
@@ -75,6 +77,7 @@ const KEYS: &[&str] = &[
     "clip",
     "source_clip",
     "bounds",
+    "spirv",
     "axis",
     "constraint",
     "include",
@@ -182,10 +185,15 @@ fn read_conventions(reader: &mut ManifestReader, table: &DeTable) -> Conventions
         let unknown = (codes::UNKNOWN_CLIP, ["there is no clip space", "not one", "clip spaces"]);
         reader.choice(value, "`source_clip`", SourceClip::ALL.iter().copied(), unknown)
     });
+    let spirv = table.get("spirv").and_then(|value| {
+        let unknown = (codes::UNKNOWN_SPIRV, ["there is no form of SPIR-V", "not one", "forms"]);
+        reader.choice(value, "`spirv`", SpirvForm::ALL.iter().copied(), unknown)
+    });
     Conventions {
         clip: clip.unwrap_or_default(),
         source_clip: source_clip.unwrap_or_default(),
         bounds: bounds.unwrap_or_default(),
+        spirv: spirv.unwrap_or_default(),
     }
 }
 
