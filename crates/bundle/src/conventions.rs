@@ -43,8 +43,9 @@ pub enum BoundsChecks {
     /// Nothing beyond what the author wrote.
     #[default]
     Unchecked,
-    /// Indices and coordinates are clamped to the last element, and loops end after 2^64
-    /// iterations, as far as naga's writer of the target has such checks.
+    /// Indices and coordinates are clamped to the last element, as far as naga's writer of the
+    /// target has such checks. In SPIR-V, MSL and HLSL, loops that are not proved to end by
+    /// themselves end after 2^64 iterations.
     Restrict,
 }
 
