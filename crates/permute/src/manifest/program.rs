@@ -2,7 +2,7 @@
 
 use toml::de::DeTable;
 
-use super::reader::{ManifestReader, TomlName, TomlValue};
+use super::reader::{Depth, ManifestReader, TomlName, TomlValue};
 use super::{axes, lists, names};
 use crate::axis::Axis;
 use crate::space::{Constraint, SliceLists, Space, TooComplex};
@@ -123,7 +123,9 @@ pub fn read_program(
     space.undeclared = undeclared;
     let program =
         Program { name, doc, wesl, glsl, targets, conventions, space, usage, limit: limit?, span };
-    check_limit(reader, &program);
+    if reader.depth == Depth::Whole {
+        check_limit(reader, &program);
+    }
     (self::error_count(reader) == errors).then_some(program)
 }
 
@@ -242,6 +244,9 @@ fn read_space(
     let constraints = table
         .get("constraint")
         .map_or(Vec::new(), |value| axes::read_constraints(reader, &axes, value));
+    if reader.depth == Depth::Outline {
+        return (error_count(reader) == before).then(|| Space::outline(axes, constraints));
+    }
     let only = table.get("only").map_or(Vec::new(), |value| lists::read_only(reader, &axes, value));
     let exclude =
         table.get("exclude").map_or(Vec::new(), |value| lists::read_exclude(reader, &axes, value));
