@@ -169,6 +169,10 @@ pub const LIBRARY_FILES: source::Embedded =
 
 #[cfg(feature = "cli")]
 #[doc(hidden)]
+pub mod spirv_opt;
+
+#[cfg(feature = "cli")]
+#[doc(hidden)]
 pub use whole::*;
 
 /// What the command uses besides the stages above.

@@ -1,5 +1,7 @@
 //! The checks of indices, texture loads and loops that a program may ask for.
 
+mod loops;
+
 use std::fs;
 
 use lamplight::bundle::{Bundle, Target, blob_files};
@@ -13,16 +15,20 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 3] = [
+    let cases: [Case; 6] = [
         ("checks_by_target", checks_by_target),
         ("checks_are_measured", checks_are_measured),
         ("checks_are_those_of_the_manifest", checks_are_those_of_the_manifest),
+        ("counted_loops_cost_nothing", loops::counted),
+        ("no_endless_loop_is_proved", loops::random),
+        ("loops_of_the_library", loops::library),
     ];
     let test = |(name, case): Case| Trial::test(format!("bounds::{name}"), case);
     cases.map(test).into()
 }
 
-/// An index into a uniform and into an array of its own, a texture load, and a loop.
+/// An index into a uniform and into an array of its own, a texture load, and a loop that does not end
+/// if the count is the largest number.
 const SHADER: &str = "
 struct Palette { values: array<vec4f, 3>, count: u32 }
 @group(0) @binding(0) var<uniform> table: Palette;
@@ -30,7 +36,7 @@ struct Palette { values: array<vec4f, 3>, count: u32 }
 @fragment fn fs_main(@location(0) @interpolate(flat) at: vec2u) -> @location(0) vec4f {
     var own = array(0.25, 0.5, 0.75, 1.0);
     var sum = table.values[at.x] * own[at.y] + textureLoad(image, at, 0);
-    for (var i = 0u; i < table.count; i += 1u) {
+    for (var i = 0u; i <= table.count; i += 1u) {
         sum += vec4f(0.125);
     }
     return sum;

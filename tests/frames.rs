@@ -11,19 +11,22 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use lamplight::LIBRARY_FILES;
-use lamplight::bundle::{BindingKind, Bundle, Language, Reflection, Target, pack as pack_bundle};
+use lamplight::bundle::{
+    BindingKind, Bundle, Language, Reflection, SpirvForm, Target, pack as pack_bundle,
+};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{
     Buffers, DrawItem, Drawing, EntryPoint, Mesh, PipelineState, VertexAttribute, VertexFormat,
 };
 use lamplight::execute::{Session, executors, on_thread};
-use lamplight::generate::{Request, in_memory};
+use lamplight::generate::{MemorySink, Request, Tools, generate};
 use lamplight::permute::axis::ValueSet;
 use lamplight::permute::space::{Slice, SliceLists};
 use lamplight::permute::{Assignment, Space, cover};
 use lamplight::picture::frame::{Programs, ReadyStage, Stages, pack_buffer, probe};
 use lamplight::project;
+use lamplight::spirv_opt::SpirvOpt;
 use lamplight::validate::{Validated, validate};
 use libtest_mimic::{Failed, Trial};
 
@@ -246,6 +249,20 @@ pub fn bundle(
     points: &[Assignment],
     targets: &[Target],
 ) -> Result<Bundle, String> {
+    let mut include = cover::pairwise(&sources.space).points;
+    include.extend(
+        points.iter().filter(|point| !include.contains(point)).cloned().collect::<Vec<_>>(),
+    );
+    bundle_of(sources, include, targets, SpirvForm::Names)
+}
+
+/// A bundle with some targets of permutations, in a form of SPIR-V.
+pub fn bundle_of(
+    sources: &Sources,
+    include: Vec<Assignment>,
+    targets: &[Target],
+    form: SpirvForm,
+) -> Result<Bundle, String> {
     let mut manifest = sources.programs.manifest().clone();
     let program = manifest
         .programs
@@ -253,14 +270,11 @@ pub fn bundle(
         .find(|program| program.name == sources.program)
         .ok_or("no such program")?;
     program.targets = targets.to_vec();
+    program.conventions.spirv = form;
     match sources.language {
         Language::Wesl => program.glsl = None,
         Language::Glsl => program.wesl = None,
     }
-    let mut include = cover::pairwise(&sources.space).points;
-    include.extend(
-        points.iter().filter(|point| !include.contains(point)).cloned().collect::<Vec<_>>(),
-    );
     let all = sources.space.axes().iter().map(|axis| ValueSet::full(axis.values.len())).collect();
     let exclude = vec![Slice { values: all, span: program.span }];
     let lists = SliceLists { only: Vec::new(), exclude, include };
@@ -270,8 +284,18 @@ pub fn bundle(
     program.space.undeclared = sources.space.undeclared;
     let request = Request { program: Some(sources.program.to_owned()), ..Request::default() };
     let mut texts = sources.programs.texts();
-    let made = in_memory(&mut texts, &project::library_packages(), &manifest, &request, &|_| ());
-    let made = made.map_err(|problems| render(&texts, &problems, Form::Human))?;
+    let sink = MemorySink::default();
+    let tools = Tools {
+        sink: &sink,
+        cache: None,
+        tool: "test",
+        optimiser: Some(&SpirvOpt),
+        progress: &|_| (),
+    };
+    let packages = project::library_packages();
+    let mut made = generate(&mut texts, &packages, &manifest, &request, &tools)
+        .map_err(|problems| render(&texts, &problems, Form::Human))?;
+    sink.fill(&mut made.contents);
     if let Some(whole) = made.summary.whole.first() {
         return Err(format!("expected every text to be linked; as a whole: {whole:?}"));
     }

@@ -67,6 +67,7 @@ mod shadow;
 mod site;
 mod sketch;
 mod specialise;
+mod spirv_forms;
 mod tables;
 mod toolchain;
 mod translated;
@@ -132,6 +133,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     shadow::tests,
     sketch::tests,
     specialise::tests,
+    spirv_forms::tests,
     tables::tests,
     translated::tests,
     traps::tests,

@@ -6,7 +6,7 @@ mod drawing;
 use std::path::Path;
 use std::process::Command;
 
-use lamplight::bundle::{Bundle, Found, Target, pack};
+use lamplight::bundle::{Bundle, Convention, Found, SpirvForm, Target, pack};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::emit::targets;
 use lamplight::generate::{Request, in_memory};
@@ -160,10 +160,27 @@ fn spirv() -> Outcome {
     check(!text.contains("OpSpecConstant"), &what)
 }
 
+/// The bundle in each form of SPIR-V, as the command writes it.
+fn bundles_of_forms() -> Result<Vec<(&'static str, Bundle)>, Failed> {
+    let folder = tempfile::tempdir()?;
+    std::fs::write(folder.path().join("lamplight.toml"), MANIFEST)?;
+    std::fs::write(folder.path().join("spec.wesl"), TEXT)?;
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let bundle = |form: &'static str| {
+        let (manifest, out) = (path("lamplight.toml"), path(&format!("{form}.lamplight")));
+        let places = ["--manifest", &manifest, "-o", &out, "--no-cache"];
+        let options = ["gen", "--target", "spirv", "--spirv", form];
+        run(env!("CARGO_BIN_EXE_lamplight"), &[&options[..], &places[..]].concat())?;
+        Ok((form, Bundle::from_bytes(std::fs::read(&out)?)?))
+    };
+    SpirvForm::names().map(bundle).collect()
+}
+
 /// The pixel of a drawn shader has the value that was chosen, by the override in WGSL and by the
-/// specialisation constant in SPIR-V.
+/// specialisation constant in SPIR-V of every form.
 fn values() -> Outcome {
     let device = Drawing::open()?;
+    let forms = bundles_of_forms()?;
     for (key, expected) in [("default", 198.0), ("taps=5", 60.0), ("negative,taps=16", -632.0)] {
         let found = found(key, Target::WGSL)?;
         let number = |value: &str| value.parse().unwrap_or(f64::from(u8::from(value == "true")));
@@ -179,9 +196,12 @@ fn values() -> Outcome {
         let drawn = device.draw(&module, &constants)?;
         let what = format!("WGSL {key}: expected {expected}, found {drawn:?}");
         check(drawn == [expected, 1.0, 0.0, 1.0], &what)?;
-        let drawn = device.draw(&device.chosen(key)?, &[])?;
-        let what = format!("SPIR-V {key}: expected {expected}, found {drawn:?}");
-        check(drawn == [expected, 1.0, 0.0, 1.0], &what)?;
+        for (form, bundle) in &forms {
+            let found = bundle.program("spec")?.shader("fs_main")?.get(key, Target::SPIRV)?;
+            let drawn = device.draw(&device.chosen(&found)?, &[])?;
+            let what = format!("SPIR-V, {form}, {key}: expected {expected}, found {drawn:?}");
+            check(drawn == [expected, 1.0, 0.0, 1.0], &what)?;
+        }
     }
     Ok(())
 }

@@ -205,6 +205,7 @@ fn shader(
         settings,
         options: &options,
         conventions: Default::default(),
+        optimiser: None,
         numbers: "",
     };
     let entries = entry_points(&composed).map_err(message_of)?;
@@ -372,6 +373,7 @@ fn problems(sources: &mut SourceSet, packages: &Packages) -> Diagnostics {
             settings: &settings,
             options: &options,
             conventions: Default::default(),
+            optimiser: None,
             numbers: "",
         };
         let entries = entry_points(&composed)?;

@@ -79,7 +79,7 @@ impl Package {
         self.0.path().join(name)
     }
 
-    fn command(&self, arguments: &[&str]) -> Command {
+    pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
         command.current_dir(self.0.path()).args(arguments);
         command

@@ -145,7 +145,13 @@ fn generated(manifest: &Manifest) -> Result<(), String> {
         &project::library_packages(),
         manifest,
         &request,
-        &Tools { sink: &Discard::default(), cache: None, tool: "test", progress: &|_| {} },
+        &Tools {
+            sink: &Discard::default(),
+            cache: None,
+            tool: "test",
+            optimiser: None,
+            progress: &|_| {},
+        },
     );
     black_box(generated.map_err(|diagnostics| format!("{diagnostics:?}"))?);
     Ok(())

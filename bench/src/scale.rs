@@ -54,7 +54,8 @@ fn generated(folder: &Path) -> Result<usize, Box<dyn std::error::Error>> {
     let opened = project::declared(&folder.join("lamplight.toml"), &mut sources);
     let (manifest, packages) = opened.map_err(|problems| format!("{problems:?}"))?;
     let writer = DirectoryWriter::create(folder.join("bundle"))?;
-    let tools = Tools { sink: &writer, cache: None, tool: "test", progress: &|_| {} };
+    let tools =
+        Tools { sink: &writer, cache: None, tool: "test", optimiser: None, progress: &|_| {} };
     let generated = generate(&mut sources, &packages, &manifest, &Request::default(), &tools);
     let generated = generated.map_err(|problems| format!("{problems:?}"))?;
     writer.finish(&generated.contents)?;

@@ -113,7 +113,8 @@ fn of_manifest(manifest: &Manifest, of: &str) -> Result<Settings, Diagnostics> {
 fn compile(graph: &Graph, settings: &Settings, linker: &Linker<'_>) -> Result<(), Diagnostics> {
     let (options, conventions) = (Options::default(), Conventions::default());
     let composed = compose::compose(graph, settings, &options)?;
-    let root = Root { graph, settings, options: &options, conventions, numbers: "" };
+    let root =
+        Root { graph, settings, options: &options, conventions, optimiser: None, numbers: "" };
     root.compile_with(&entry_points(&composed)?, linker)?;
     linker.forget();
     Ok(())

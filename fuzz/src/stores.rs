@@ -68,6 +68,7 @@ pub fn record(bytes: &[u8]) -> String {
         options: &Options::default(),
         targets: &[Target::WGSL],
         conventions: Conventions::default(),
+        optimiser: None,
     });
     let answer = match &found {
         Some(Ok(made)) => format!("{} {:?}", made.unit.targets.len(), made.warnings),

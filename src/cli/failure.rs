@@ -54,6 +54,13 @@ impl Failure {
                 let _ = writeln!(stderr(), "error: cannot write the bundle");
                 ExitCode::from(4)
             }
+            // So is a program that is missing.
+            Self::Input(sources, diagnostics)
+                if diagnostics.iter().any(|error| error.code == codes::OPTIMISER_FAILED) =>
+            {
+                print_warnings(&sources, &diagnostics, form);
+                ExitCode::from(4)
+            }
             Self::Input(sources, diagnostics) => {
                 explain_diagnostics(&sources, &diagnostics, form);
                 ExitCode::from(1)

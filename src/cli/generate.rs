@@ -6,7 +6,9 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::compile::{ConventionArguments, TargetChoice, wanted_one, wanted_targets};
+use super::compile::{
+    ConventionArguments, SpirvArguments, TargetChoice, wanted_one, wanted_targets,
+};
 use super::failure::{DiagnosticForm, Failure};
 use super::terminal::stdout;
 use super::validated::{ValidatedOutputs, refuse_missing};
@@ -31,6 +33,8 @@ pub struct Arguments {
     target: Vec<TargetChoice>,
     #[command(flatten)]
     conventions: ConventionArguments,
+    #[command(flatten)]
+    spirv: SpirvArguments,
     /// Compile only the k-th of n parts, which `lamplight merge` puts together.
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
@@ -85,7 +89,7 @@ fn make_request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
         program: arguments.program.clone(),
         only,
         targets: wanted_targets(&arguments.target),
-        conventions: arguments.conventions.chosen(),
+        conventions: arguments.spirv.with(arguments.conventions),
         shard: arguments.shard,
     }
 }

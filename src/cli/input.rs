@@ -13,7 +13,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::generate;
 use crate::parse::words::is_word;
 use crate::permute::manifest::Features;
-use crate::permute::{Assignment, Program, Quoted, Setting, Settings, key};
+use crate::permute::{Assignment, Manifest, Program, Quoted, Setting, Settings, key};
 use crate::project::{self, Project};
 use crate::resolve::{self, Graph};
 use crate::source::{SourceId, SourceSet, Span};
@@ -451,7 +451,7 @@ impl InputArguments {
         root: &Path,
         path: &str,
     ) -> Result<ChosenSettings, Diagnostics> {
-        let manifest = project::manifest(root, &mut project.sources)?;
+        let manifest = project::manifest_outline(root, &mut project.sources)?;
         let program = manifest.as_ref().and_then(|manifest| {
             manifest.programs.iter().find(|program| program.files().any(|file| file.path == path))
         });
@@ -462,11 +462,16 @@ impl InputArguments {
                 chosen.partner = partner_of(program, path);
                 Ok(chosen)
             }
-            None => self.free(root, &mut project.sources),
+            None => self.free(root, manifest, &mut project.sources),
         }
     }
 
-    fn free(&self, root: &Path, sources: &mut SourceSet) -> Result<ChosenSettings, Diagnostics> {
+    fn free(
+        &self,
+        root: &Path,
+        manifest: Option<Manifest>,
+        sources: &mut SourceSet,
+    ) -> Result<ChosenSettings, Diagnostics> {
         let mut settings = Settings {
             values: self.chosen().cloned().collect(),
             integers: numbered(&self.set),
@@ -476,7 +481,7 @@ impl InputArguments {
         };
         let parts: Vec<String> =
             settings.values.iter().map(|(name, value)| format!("{name}={value}")).collect();
-        let declared = match project::manifest(root, sources)? {
+        let declared = match manifest {
             Some(manifest) => manifest.features,
             None => project::features(root, sources)?,
         };

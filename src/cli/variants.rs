@@ -26,6 +26,7 @@ use crate::permute::{Manifest, Program};
 use crate::project;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
+use crate::spirv_opt::SpirvOpt;
 
 /// Report how many permutations a manifest has, and what each axis costs.
 #[derive(Args)]
@@ -236,6 +237,7 @@ fn compose(
             sink: &Discard::default(),
             cache: None,
             tool: crate::TOOL,
+            optimiser: Some(&SpirvOpt),
             progress: &progress,
         };
         let compiled = generate::generate(sources, packages, manifest, &request, &tools)?;

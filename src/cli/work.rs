@@ -25,6 +25,7 @@ use crate::permute::Manifest;
 use crate::project;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
+use crate::spirv_opt::SpirvOpt;
 use crate::store;
 use crate::validators::Extent;
 
@@ -151,7 +152,10 @@ impl Work {
 
     /// An earlier run, if nothing changed since. Its warnings are printed again.
     pub fn up_to_date(&self, request: &Request, look: Look, form: DiagnosticForm) -> Option<Trace> {
-        let mut found = Trace::find(self.cache.as_ref()?, self.as_run(request), look)?;
+        // A run without the optimiser that it needs tells what is missing.
+        let optimiser = request.optimiser_version(&self.manifest, Some(&SpirvOpt)).ok()?;
+        let run = self.as_run(request, optimiser.as_deref());
+        let mut found = Trace::find(self.cache.as_ref()?, run, look)?;
         let _ = stderr().write_all(found.warnings.text(form.into()).as_bytes());
         (found.summary.up_to_date, found.summary.validated) = (true, None);
         Some(found)
@@ -181,7 +185,10 @@ impl Work {
             let warnings = RunWarnings::new(&self.path, &self.sources, &warnings);
             let trace = Trace::new(&self.observer, &self.out, summary.clone(), warnings);
             if let Some(trace) = trace {
-                trace.keep(cache, self.as_run(request));
+                let optimiser = request.optimiser_version(&self.manifest, Some(&SpirvOpt));
+                if let Ok(optimiser) = optimiser {
+                    trace.keep(cache, self.as_run(request, optimiser.as_deref()));
+                }
                 if let (Some(validators), Some(validated)) = (&self.validators, &summary.validated)
                 {
                     validators.record(trace.bundle(), &summary).keep(cache, validated);
@@ -191,13 +198,14 @@ impl Work {
         Ok(summary)
     }
 
-    fn as_run<'a>(&'a self, request: &'a Request) -> TracedRun<'a> {
+    fn as_run<'a>(&'a self, request: &'a Request, optimiser: Option<&'a str>) -> TracedRun<'a> {
         TracedRun {
             manifest: &self.path,
             declared: &self.declared,
             request,
             packages: &self.packages,
             out: &self.out,
+            optimiser,
         }
     }
 
@@ -263,6 +271,7 @@ impl Work {
             sink,
             cache: self.cache.as_ref(),
             tool: crate::TOOL,
+            optimiser: Some(&SpirvOpt),
             progress: &|progress| bar.show(progress),
         };
         let generated =

@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use lamplight::bundle::{Bundle, Language, Target};
+use lamplight::bundle::{Bundle, Convention, Language, SpirvForm, Target};
 use lamplight::diagnostic::Diagnostic;
 use lamplight::execute::executors::{self, ExecutorEntry, Shipping};
 use lamplight::execute::frame::{DrawItem, Drawing, EntryPoint};
@@ -19,7 +19,7 @@ use lamplight::permute::axis::ValueSet;
 use lamplight::picture::frame::probe;
 use libtest_mimic::{Failed, Trial};
 
-use super::{PROGRAMS, Scene, Sources, bundle, most_open, points};
+use super::{PROGRAMS, Scene, Sources, bundle, bundle_of, most_open, points};
 use crate::fragments::{self, Tally, Watched};
 use crate::is_whole;
 
@@ -29,6 +29,8 @@ const LEAST_POINTS: usize = 200;
 const DRAWN_POINTS: [usize; 2] = [8, 12];
 /// How many of programs that are smaller than `forward`.
 const DRAWN_OF_SMALL: [usize; 2] = [3, 4];
+/// How many permutations of each program are drawn in each form of SPIR-V.
+const FORM_POINTS: usize = 3;
 /// The size of a frame in pixels.
 pub const SIZE: [u32; 2] = [96, 48];
 /// Every 29th quad is computed again.
@@ -51,7 +53,35 @@ pub fn tests() -> Vec<Trial> {
     let others = Trial::test("frames/shipped/others_are_noticed", || {
         on_thread(others_are_noticed).ok_or("panicked")?.map_err(Failed::from)
     });
-    drawn.chain([others]).collect()
+    let forms = Trial::test("frames/shipped/spirv_forms", || {
+        on_thread(spirv_forms).ok_or("panicked")?.map_err(Failed::from)
+    });
+    drawn.chain([others, forms]).collect()
+}
+
+/// Stripped and optimised SPIR-V draws what the evaluator computes.
+fn spirv_forms() -> Result<(), String> {
+    for program in PROGRAMS {
+        let sources = Sources::load(program, Language::Wesl)?;
+        let mut points = points(&sources.space, FORM_POINTS);
+        points.truncate(FORM_POINTS);
+        for (name, form) in SpirvForm::ALL {
+            let bundle = bundle_of(&sources, points.clone(), &[Target::SPIRV], *form)?;
+            let mut drivers = drivers(&[Target::SPIRV])?;
+            for point in &points {
+                let (key, scene) = (sources.space.key(point).to_string(), sources.scene(point)?);
+                permutation(&bundle, (program, Language::Wesl), &key, &scene, &mut drivers)?;
+            }
+            for driver in &drivers {
+                println!("{program}, {name} {driver}");
+                let lacks = driver.lacks.keys().chain(&driver.failures);
+                if let Some(failure) = lacks.into_iter().next() {
+                    return Err(format!("{program}, {name}: {failure}"));
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The targets that the environment names, or all except MSL.

@@ -74,7 +74,8 @@ fn hashed(
 ) -> Result<Generated, Failed> {
     let request = request(sources, key);
     let sink = Discard::default();
-    let tools = Tools { sink: &sink, cache: None, tool: "test", progress: &|_| () };
+    let tools =
+        Tools { sink: &sink, cache: None, tool: "test", optimiser: None, progress: &|_| () };
     let made = generate(sources, packages, manifest, &request, &tools);
     Ok(made.map_err(|problems| render(sources, &problems, Form::Human))?)
 }

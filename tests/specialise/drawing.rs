@@ -1,10 +1,10 @@
 //! Draws one pixel, whose colour shows the value that a shader has.
 
-use lamplight::bundle::Target;
+use lamplight::bundle::Found;
 use libtest_mimic::Failed;
 use pollster::block_on;
 
-use super::{choice_id, found, run};
+use super::{choice_id, run};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
@@ -47,14 +47,13 @@ impl Drawing {
         Ok(Self { device, queue, vertex })
     }
 
-    /// The SPIR-V of a key with its constants set by spirv-opt. A driver does so when it makes a
+    /// SPIR-V with its constants set by spirv-opt. A driver does so when it makes a
     /// pipeline, but wgpu cannot pass constants to a shader that it does not translate.
-    pub fn chosen(&self, key: &str) -> Result<wgpu::ShaderModule, Failed> {
-        let found = found(key, Target::SPIRV)?;
+    pub fn chosen(&self, found: &Found) -> Result<wgpu::ShaderModule, Failed> {
         let folder = tempfile::tempdir()?;
         let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
         std::fs::write(path("a.spv"), &found.bytes)?;
-        let id = |name: &str| choice_id(&found, name);
+        let id = |name: &str| choice_id(found, name);
         let values = found
             .constants
             .iter()

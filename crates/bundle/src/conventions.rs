@@ -1,4 +1,5 @@
-//! What is chosen for an output besides its target: the clip space and the checks of indices.
+//! What is chosen for an output besides its target: the clip space, the checks of indices, and the
+//! form of SPIR-V.
 
 /// A choice that an author makes by name, in a manifest or on the command line.
 pub trait Convention: Copy + PartialEq + 'static {
@@ -42,8 +43,9 @@ pub enum BoundsChecks {
     /// Nothing beyond what the author wrote.
     #[default]
     Unchecked,
-    /// Indices and coordinates are clamped to the last element, and loops end after 2^64
-    /// iterations, as far as naga's writer of the target has such checks.
+    /// Indices and coordinates are clamped to the last element, as far as naga's writer of the
+    /// target has such checks. In SPIR-V, MSL and HLSL, loops that are not proved to end by
+    /// themselves end after 2^64 iterations.
     Restrict,
 }
 
@@ -77,6 +79,23 @@ impl Convention for SourceClip {
     ];
 }
 
+/// What is kept of an output in SPIR-V. Each form computes the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum SpirvForm {
+    /// With the author's names, for debuggers.
+    #[default]
+    Names,
+    /// Without names and other instructions for debuggers.
+    Stripped,
+    /// Stripped, and optimised by `spirv-opt`.
+    Optimised,
+}
+
+impl Convention for SpirvForm {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("names", Self::Names), ("stripped", Self::Stripped), ("optimised", Self::Optimised)];
+}
+
 /// What is chosen for an output besides its target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct Conventions {
@@ -86,6 +105,8 @@ pub struct Conventions {
     pub source_clip: SourceClip,
     /// Checks of indices and loops.
     pub bounds: BoundsChecks,
+    /// The form of SPIR-V. It means nothing for other targets.
+    pub spirv: SpirvForm,
 }
 
 /// Requested conventions, such as those of the command line. They override those of a program.
@@ -97,6 +118,8 @@ pub struct RequestedConventions {
     pub source_clip: Option<SourceClip>,
     /// Checks of indices and loops.
     pub bounds: Option<BoundsChecks>,
+    /// The form of SPIR-V.
+    pub spirv: Option<SpirvForm>,
 }
 
 impl RequestedConventions {
@@ -106,6 +129,7 @@ impl RequestedConventions {
             clip: self.clip.unwrap_or(own.clip),
             source_clip: self.source_clip.unwrap_or(own.source_clip),
             bounds: self.bounds.unwrap_or(own.bounds),
+            spirv: self.spirv.unwrap_or(own.spirv),
         }
     }
 }

@@ -40,6 +40,7 @@ mod usage;
 pub use contents::{Artifact, Axis, Contents, EntryContents, Hash, ProgramContents, Unit};
 pub use conventions::{
     BoundsChecks, ClipConvention, Convention, Conventions, RequestedConventions, SourceClip,
+    SpirvForm,
 };
 pub use diff::{Change, Difference, diff};
 pub use digest::{Digest, Digester};

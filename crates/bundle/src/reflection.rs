@@ -284,6 +284,9 @@ pub struct Native {
     /// The clip space of a vertex stage's positions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clip: Option<ClipSpace>,
+    /// The program that optimised the output, with its version, if one did (SPIR-V).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub optimiser: Option<String>,
 }
 
 /// The clip space in which an output expects the author's positions, and what the host has to do

@@ -14,6 +14,7 @@ pub mod clip;
 mod columns;
 mod depths;
 mod descriptors;
+mod ends;
 mod extensions;
 mod filters;
 mod fractions;
@@ -52,6 +53,8 @@ mod unused;
 mod workgroups;
 mod zeros;
 
+#[doc(hidden)]
+pub use ends::proof::LoopProofs;
 pub use filters::without_derivative_rule;
 pub use header::is_header_line;
 pub use isolate::{isolate, with_defaults};
@@ -152,6 +155,16 @@ impl EmitSource<'_> {
     /// Whether the output checks indices and loops.
     pub fn is_restricted(&self) -> bool {
         self.conventions.bounds == BoundsChecks::Restrict
+    }
+
+    /// The same for another module that was made of its module, if there is one.
+    fn with_analysed<'m>(
+        &'m self,
+        other: Option<&'m (naga::Module, naga::valid::ModuleInfo)>,
+    ) -> EmitSource<'m> {
+        let (module, info) =
+            other.map_or((self.module, self.info), |(module, info)| (module, info));
+        EmitSource { module, info, ..*self }
     }
 
     /// The checks, as naga names them.

@@ -40,6 +40,10 @@ pub mod op {
     pub const IMAGE_WRITE: u16 = 99;
     pub const IMAGE_QUERY_SIZE_LOD: u16 = 103;
     pub const IMAGE_QUERY_SIZE: u16 = 104;
+
+    /// Those that only debuggers read: `OpSourceContinued`, `OpSource`, `OpSourceExtension`,
+    /// `OpName`, `OpMemberName`, `OpString`, `OpLine`, `OpNoLine` and `OpModuleProcessed`.
+    pub const DEBUG: [u16; 9] = [2, 3, 4, NAME, MEMBER_NAME, 7, 8, 317, 330];
 }
 
 /// The words of a module's bytes, which are little-endian.

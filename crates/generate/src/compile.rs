@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::compositions::ComposedForms;
 use super::entry::ShaderEntry;
 use super::sink::Sink;
+use super::spirv_form::SpirvShaper;
 use crate::cache::{Cache, CachedUnit, CompileJob};
 use lamplight_bundle::{Conventions, Digest, Target};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
@@ -25,6 +26,7 @@ pub struct Compiler<'a> {
     pub sink: &'a dyn Sink,
     pub cache: Option<&'a Cache>,
     pub linker: Linker<'a>,
+    pub shaper: SpirvShaper<'a>,
 }
 
 impl Compiler<'_> {
@@ -47,6 +49,7 @@ impl Compiler<'_> {
             options: &entry.options,
             targets: self.targets,
             conventions: self.conventions,
+            optimiser: self.shaper.version(),
         };
         if let Some(found) = self.cache.and_then(|cache| cache.find(job)) {
             return self.pass_on(found?, Vec::new());
@@ -54,8 +57,9 @@ impl Compiler<'_> {
         let both = link::TextForms { composed: &text.composed, lean: &text.lean };
         let made = link::compile(&both, &entry.name, self.targets, &self.linker);
         let (made, whole) = match made {
-            Ok(link::CompiledUnit { unit, warnings, whole }) => {
-                (Ok(CachedUnit { unit, warnings }), whole)
+            Ok(link::CompiledUnit { mut unit, warnings, whole }) => {
+                let shaped = self.shaper.shape(&mut unit);
+                (shaped.map(|()| CachedUnit { unit, warnings }), whole)
             }
             Err(errors) => (Err(errors), Vec::new()),
         };
@@ -81,6 +85,7 @@ impl Compiler<'_> {
 /// Whether the failure is one of this machine, now: another machine, or this one later, might
 /// succeed.
 fn is_of_this_machine(made: &Result<CachedUnit, Diagnostics>) -> bool {
-    let is_exhausted = |error: &Diagnostic| error.code == codes::NAGA_EXHAUSTED;
-    made.as_ref().is_err_and(|errors| errors.iter().any(is_exhausted))
+    let of_machine = [codes::NAGA_EXHAUSTED, codes::OPTIMISER_FAILED];
+    let is_of_machine = |error: &Diagnostic| of_machine.contains(&error.code);
+    made.as_ref().is_err_and(|errors| errors.iter().any(is_of_machine))
 }

@@ -25,6 +25,7 @@ mod permutation;
 mod shader;
 mod shard;
 mod sink;
+mod spirv_form;
 mod stamp;
 #[cfg(feature = "store")]
 pub mod store;
@@ -39,6 +40,7 @@ pub use permutation::{Permutation, ShaderName, permutation};
 pub use shader::{CompiledShader, Root, add_numbers, entry_points, program_numbers};
 pub use shard::Shard;
 pub use sink::{Discard, MemorySink, Sink};
+pub use spirv_form::{Optimiser, SpirvShaper};
 pub use stamp::Look;
 pub use summary::{EntrySummary, ProgramSummary, Summary, WholeSummary};
 pub use trace::{Observer, RunWarnings, Trace, TracedRun};
@@ -84,10 +86,42 @@ pub struct Request {
 }
 
 impl Request {
-    /// What is asked for, without the shard, as one line.
-    fn settings(&self) -> String {
+    /// The shaper of a program's SPIR-V.
+    ///
+    /// # Errors
+    /// If the SPIR-V is to be optimised, and the optimiser is missing.
+    fn shaper<'a>(
+        &self,
+        program: &Program,
+        optimiser: Option<&'a dyn Optimiser>,
+    ) -> Result<SpirvShaper<'a>, Diagnostics> {
+        let form = self.conventions.or(program.conventions).spirv;
+        SpirvShaper::new(form, &self.targets_of(program), optimiser)
+    }
+
+    /// The version of the optimiser that the run needs; `None` if it needs none.
+    ///
+    /// # Errors
+    /// If the optimiser is missing.
+    pub fn optimiser_version(
+        &self,
+        manifest: &Manifest,
+        optimiser: Option<&dyn Optimiser>,
+    ) -> Result<Option<String>, Diagnostics> {
+        let is_chosen =
+            |program: &&Program| self.program.as_ref().is_none_or(|wanted| *wanted == program.name);
+        for program in manifest.programs.iter().filter(is_chosen) {
+            if let Some(version) = self.shaper(program, optimiser)?.version() {
+                return Ok(Some(version.to_owned()));
+            }
+        }
+        Ok(None)
+    }
+
+    /// What is asked for, without the shard, and the version of the optimiser, as one line.
+    fn settings(&self, optimiser: Option<&str>) -> String {
         let Self { program, only, targets, conventions, shard: _ } = self;
-        let RequestedConventions { clip, source_clip, bounds } = conventions;
+        let RequestedConventions { clip, source_clip, bounds, spirv } = conventions;
         let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
         let parts = [
             program.as_ref().map(|program| format!("program {program}")),
@@ -96,6 +130,8 @@ impl Request {
             clip.map(|clip| format!("clip {clip:?}")),
             source_clip.map(|clip| format!("source clip {clip:?}")),
             bounds.map(|bounds| format!("bounds {bounds:?}")),
+            spirv.map(|spirv| format!("spirv {spirv:?}")),
+            optimiser.map(|version| format!("optimised by {version}")),
         ];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         if parts.is_empty() { "of the manifest".to_owned() } else { parts.join(", ") }
@@ -120,6 +156,8 @@ pub struct Tools<'a> {
     /// The identity of the program, which parts of one bundle must share. It is the same on every
     /// system that the program is built for.
     pub tool: &'a str,
+    /// What optimises SPIR-V. A run that needs it and has none fails.
+    pub optimiser: Option<&'a dyn Optimiser>,
     /// Called with how far the run is.
     pub progress: &'a (dyn Fn(Progress) + Sync),
 }
@@ -165,8 +203,8 @@ pub fn generate(
         summary: Summary::default(),
         warnings: manifest.warnings.clone(),
     };
-    let mut outputs = DistinctOutputs::default();
-    let mut lints = Lints::default();
+    let (mut outputs, mut lints) = (DistinctOutputs::default(), Lints::default());
+    let optimiser = request.optimiser_version(manifest, tools.optimiser)?;
     for (program, points, entries) in prepare_programs(sources, packages, manifest, request)? {
         let points = request.shard.map_or(&*points, |shard| shard.of(&points));
         let targets = request.targets_of(program);
@@ -177,6 +215,7 @@ pub fn generate(
             sink: tools.sink,
             cache: tools.cache,
             linker: Linker::with(&targets, conventions),
+            shaper: request.shaper(program, tools.optimiser)?,
         };
         let make = |batch: &[(&ComposedForms, &ShaderEntry)]| compiler.make(batch);
         let results = on_large_stack(|| {
@@ -191,8 +230,9 @@ pub fn generate(
         outputs.add(&targets, &results);
         generated.add(program, points, &results);
     }
+    let settings = request.settings(optimiser.as_deref());
     generated.contents.shard =
-        request.shard.and_then(|shard| origin(shard, request, tools.tool, sources));
+        request.shard.and_then(|shard| origin(shard, settings, tools.tool, sources));
     generated.warnings.extend(lints.finish());
     generated.warnings = lint::distinct(sources, generated.warnings);
     generated.summary.targets = outputs.summaries();
@@ -202,14 +242,14 @@ pub fn generate(
 }
 
 /// What a part of a bundle was made of; `None` for the only part.
-fn origin(shard: Shard, request: &Request, tool: &str, sources: &SourceSet) -> Option<ShardOrigin> {
+fn origin(shard: Shard, settings: String, tool: &str, sources: &SourceSet) -> Option<ShardOrigin> {
     let (index, count) = shard.numbers();
     let texts: Vec<&str> = sources.iter().map(|(_, source)| &*source.text).collect();
     (count > 1).then(|| ShardOrigin {
         parts: [index as u64].into(),
         of: count as u64,
         tool: tool.to_owned(),
-        settings: request.settings(),
+        settings,
         sources: to_hex(&hash_parts(&texts)),
     })
 }
@@ -243,7 +283,8 @@ fn prepare_programs<'a>(
     if errors.is_empty() { Ok(programs) } else { Err(lint::distinct(sources, errors)) }
 }
 
-/// [`generate`] with every unit in the contents, for callers that want the bundle in memory.
+/// [`generate`] with every unit in the contents, for callers that want the bundle in memory. It runs
+/// no program, so it cannot optimise SPIR-V.
 ///
 /// # Errors
 /// Those of [`generate`].
@@ -260,7 +301,13 @@ pub fn in_memory(
         packages,
         manifest,
         request,
-        &Tools { sink: &sink, cache: None, tool: env!("CARGO_PKG_VERSION"), progress },
+        &Tools {
+            sink: &sink,
+            cache: None,
+            tool: env!("CARGO_PKG_VERSION"),
+            optimiser: None,
+            progress,
+        },
     )?;
     sink.fill(&mut generated.contents);
     Ok(generated)

@@ -1,6 +1,7 @@
 //! Compiles one root file for one choice of settings, without a manifest. The bytes are those that
 //! a run over a manifest gives for the same settings.
 
+use super::spirv_form::{Optimiser, SpirvShaper};
 use lamplight_bundle::{Conventions, Language, Target};
 use lamplight_compose::resolve::Graph;
 use lamplight_compose::{self as compose, Composed, Keep, Options, lean};
@@ -32,6 +33,8 @@ pub struct Root<'a> {
     pub options: &'a Options,
     /// The clip space and the checks of its outputs.
     pub conventions: Conventions,
+    /// What optimises SPIR-V. An output that needs it and has none is an error.
+    pub optimiser: Option<&'a dyn Optimiser>,
     /// What [`program_numbers`] gives for its stage; empty for a file alone.
     pub numbers: &'a str,
 }
@@ -85,8 +88,13 @@ impl Root<'_> {
         linker: &Linker<'_>,
     ) -> Result<Vec<CompiledShader>, Diagnostics> {
         let (mut shaders, mut errors) = (Vec::new(), Diagnostics::new());
+        let shaper = SpirvShaper::new(self.conventions.spirv, linker.targets(), self.optimiser)?;
         for (entry, _) in entries {
-            match on_large_stack(|| self.one(entry, linker)) {
+            let made = on_large_stack(|| self.one(entry, linker)).and_then(|mut made| {
+                shaper.shape(&mut made.unit)?;
+                Ok(made)
+            });
+            match made {
                 Ok(made) => shaders.push(CompiledShader { entry: entry.clone(), made }),
                 Err(found) => errors.extend(found),
             }

@@ -115,6 +115,8 @@ pub struct TracedRun<'a> {
     pub packages: &'a Packages,
     /// The bundle.
     pub out: &'a Path,
+    /// The version of the program that optimises SPIR-V, if the run needs it.
+    pub optimiser: Option<&'a str>,
 }
 
 impl Trace {
@@ -140,10 +142,8 @@ impl Trace {
     /// Finds the trace of an equal run, if everything that it read is the same and the bundle is
     /// the one that it wrote. The look says whether blobs that seem unchanged are read.
     pub fn find(cache: &Cache, run: TracedRun<'_>, look: Look) -> Option<Self> {
-        let mut trace: Self = serde_json::from_slice(
-            &cache.get("runs", trace_key(cache, run.declared, run.request))?,
-        )
-        .ok()?;
+        let mut trace: Self =
+            serde_json::from_slice(&cache.get("runs", trace_key(cache, run))?).ok()?;
         let reads = trace.reads.iter().map(|(package, question, answer)| {
             ((package.clone(), question.clone()), answer.clone())
         });
@@ -159,19 +159,17 @@ impl Trace {
 
     /// Keeps the trace for [`Self::find`].
     pub fn keep(&self, cache: &Cache, run: TracedRun<'_>) {
-        cache.put(
-            "runs",
-            trace_key(cache, run.declared, run.request),
-            serde_json::to_vec(self).ok(),
-        );
+        cache.put("runs", trace_key(cache, run), serde_json::to_vec(self).ok());
     }
 }
 
-fn trace_key(cache: &Cache, sources: &SourceSet, request: &Request) -> lamplight_bundle::Hash {
-    let only = request.only.as_ref().map(|only| &only.text);
-    let Request { program, targets, conventions, shard, .. } = request;
-    let request = format!("{program:?} {only:?} {targets:?} {conventions:?} {shard:?}");
-    let texts = sources.iter().map(|(_, source)| &*source.text);
+fn trace_key(cache: &Cache, run: TracedRun<'_>) -> lamplight_bundle::Hash {
+    let TracedRun { manifest: _, declared, request, packages: _, out: _, optimiser } = run;
+    let Request { program, only, targets, conventions, shard } = request;
+    let only = only.as_ref().map(|only| &only.text);
+    let request =
+        format!("{program:?} {only:?} {targets:?} {conventions:?} {shard:?} {optimiser:?}");
+    let texts = declared.iter().map(|(_, source)| &*source.text);
     hash_parts(&["run", cache.build(), &request].into_iter().chain(texts).collect::<Vec<_>>())
 }
 

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::browsers::fit_for_browsers;
 use super::{Linker, Reason};
 use lamplight_bundle::{
-    Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Language, SourceClip, Target,
-    Unit,
+    Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Language, SourceClip,
+    SpirvForm, Target, Unit,
 };
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
@@ -138,8 +138,8 @@ fn try_and_validate(
 ) -> Result<Validated, Diagnostics> {
     let outputs = || {
         let targets = targets.iter().map(|target| target.name().to_owned()).collect();
-        // What naga reads is converted already.
-        let Conventions { clip, source_clip: _, bounds } = linker.conventions;
+        // What naga reads is converted already, and the form of SPIR-V comes after naga.
+        let Conventions { clip, source_clip: _, bounds, spirv: _ } = linker.conventions;
         let [clip, bounds] = [clip.name(), bounds.name()].map(str::to_owned);
         Some(validate::SandboxOutputs { entry: entry.to_owned(), targets, clip, bounds })
     };
@@ -171,6 +171,7 @@ pub fn perform_job(job: &validate::SandboxJob) {
         clip: ClipConvention::find(&outputs.clip).unwrap_or_default(),
         source_clip: SourceClip::WebGpu,
         bounds: BoundsChecks::find(&outputs.bounds).unwrap_or_default(),
+        spirv: SpirvForm::default(),
     };
     let linker = Linker::with(&targets, conventions);
     let _ = on_large_stack(|| compile_whole(&text, &outputs.entry, &targets, &linker));

@@ -5,6 +5,7 @@
 
 mod key_laws;
 mod laws;
+mod outlines;
 mod random;
 
 use std::fmt::Write as _;

@@ -50,7 +50,11 @@ impl Tool {
         };
         let ask = || {
             let output = Command::new(self.program).arg("--version").stdin(Stdio::null()).output();
-            let words = |output: Output| String::from_utf8_lossy(&output.stdout).replace('\n', " ");
+            // spirv-opt writes it to standard error.
+            let words = |Output { stdout, stderr, .. }: Output| {
+                let text = if stdout.is_empty() { stderr } else { stdout };
+                String::from_utf8_lossy(&text).replace('\n', " ")
+            };
             output.map_or(String::new(), words)
         };
         slot.get_or_init(ask).clone()

@@ -41,7 +41,8 @@ pub use guard::{catch_panics, guard, on_large_stack};
 pub use hints::glsl_words;
 pub use limits::{LIMITS, NagaLimits};
 pub use operands::{
-    change_operands, change_used, inner_blocks, inner_blocks_mut, operands, result_mut,
+    change_operands, change_used, computed, inner_blocks, inner_blocks_mut, operands, result_mut,
+    used,
 };
 #[doc(hidden)]
 pub use sandbox::{STAGE, SandboxJob, SandboxOutputs, try_in_sandbox};

@@ -109,6 +109,7 @@ export interface Native {
   buffer_sizes?: { index: number; buffers: Place[] };
   first_instance?: string;
   clip?: ClipSpace;
+  optimiser?: string;
 }
 
 /** The value of an override that a key chooses. */

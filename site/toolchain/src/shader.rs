@@ -228,7 +228,7 @@ fn shaders(
     composed: &Composed,
     wanted: &[Target],
 ) -> Result<Vec<CompiledShader>, Diagnostics> {
-    let root = Root { graph, settings, options, conventions, numbers: "" };
+    let root = Root { graph, settings, options, conventions, optimiser: None, numbers: "" };
     let mut entries = entry_points(composed)?;
     if let Some(wanted) = &request.entry {
         entries.retain(|(name, _)| name == wanted);
@@ -319,7 +319,7 @@ fn requested_conventions(request: &ShaderRequest) -> Result<RequestedConventions
     let clip = named(&request.clip, codes::UNKNOWN_CLIP, "there is no clip space");
     let bounds =
         named::<BoundsChecks>(&request.bounds, codes::UNKNOWN_BOUNDS, "there are no checks");
-    Ok(RequestedConventions { clip: clip?, source_clip: None, bounds: bounds? })
+    Ok(RequestedConventions { clip: clip?, source_clip: None, bounds: bounds?, spirv: None })
 }
 
 fn named<C: Convention>(

@@ -1,6 +1,8 @@
 //! The options for conventions of outputs.
 
-use crate::bundle::{BoundsChecks, ClipConvention, Convention, RequestedConventions, SourceClip};
+use crate::bundle::{
+    BoundsChecks, ClipConvention, Convention, RequestedConventions, SourceClip, SpirvForm,
+};
 
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct ConventionArguments {
@@ -22,7 +24,23 @@ pub struct ConventionArguments {
 impl ConventionArguments {
     pub fn chosen(self) -> RequestedConventions {
         let Self { clip, source_clip, bounds } = self;
-        RequestedConventions { clip, source_clip, bounds }
+        RequestedConventions { clip, source_clip, bounds, spirv: None }
+    }
+}
+
+/// The option for the form of SPIR-V, of commands that write outputs.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub struct SpirvArguments {
+    /// SPIR-V with `names` for debuggers, `stripped` of them, or also `optimised` by `spirv-opt`,
+    /// which must be installed [default: that of the program in the manifest, or else `names`].
+    #[arg(long, value_name = "FORM", value_parser = parse_convention::<SpirvForm>)]
+    spirv: Option<SpirvForm>,
+}
+
+impl SpirvArguments {
+    /// All conventions that are asked for.
+    pub fn with(self, others: ConventionArguments) -> RequestedConventions {
+        RequestedConventions { spirv: self.spirv, ..others.chosen() }
     }
 }
 

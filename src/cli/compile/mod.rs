@@ -5,7 +5,7 @@ mod depfile;
 mod files;
 mod target;
 
-pub use conventions::{ConventionArguments, parse_convention};
+pub use conventions::{ConventionArguments, SpirvArguments, parse_convention};
 pub use depfile::write_depfile;
 pub use files::file_ending;
 pub use target::{TargetChoice, parse_target, wanted_one, wanted_targets};
@@ -19,8 +19,9 @@ use super::input::{ComposedInput, ErrorContext, InputArguments};
 use super::overwrite::Overwrite;
 use crate::bundle::Target;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
-use crate::generate::{CompiledShader, Root, entry_points};
+use crate::generate::{CompiledShader, Optimiser, Root, entry_points};
 use crate::source::SourceSet;
+use crate::spirv_opt::SpirvOpt;
 use files::OutputFile;
 
 /// Compile shaders, and write a file for each entry point and target.
@@ -36,6 +37,8 @@ pub struct Arguments {
     target: Vec<TargetChoice>,
     #[command(flatten)]
     conventions: ConventionArguments,
+    #[command(flatten)]
+    spirv: SpirvArguments,
     /// Fail if one of `all` targets lacks what a shader needs, instead of leaving it out.
     #[arg(long)]
     strict: bool,
@@ -70,8 +73,11 @@ pub fn run_compile(arguments: Arguments, form: DiagnosticForm) -> Result<(), Fai
                 made.extend(files);
                 sources
             }
-            // Errors in one file do not hide those in the next.
-            Err(Failure::Input(sources, errors)) => {
+            // Errors in one file do not hide those in the next. A program that is missing is missing
+            // for all.
+            Err(Failure::Input(sources, errors))
+                if errors.iter().all(|error| error.code != codes::OPTIMISER_FAILED) =>
+            {
                 print_warnings(&sources, &errors, form);
                 failed = Some(Failure::Input(sources.clone(), Vec::new()));
                 sources
@@ -104,9 +110,10 @@ fn compile_file(
 ) -> Result<(SourceSet, Vec<OutputFile>), Failure> {
     let ComposedInput { sources, composed, context } = ready;
     let ErrorContext { graph, settings, options, .. } = &context;
-    let conventions = arguments.conventions.chosen().or(context.conventions);
+    let conventions = arguments.spirv.with(arguments.conventions).or(context.conventions);
     let numbers = context.numbers.as_str();
-    let root = Root { graph, settings, options, conventions, numbers };
+    let optimiser: Option<&dyn Optimiser> = Some(&SpirvOpt);
+    let root = Root { graph, settings, options, conventions, optimiser, numbers };
     let shaders = entry_points(&composed).and_then(|entries| {
         let entries = chosen_entries(arguments, file, entries)?;
         compile_able(&root, &entries, targets, &arguments.optional())

@@ -20,13 +20,14 @@ use crate::cost::foreign::{ForeignError, foreign_stages};
 use crate::cost::pipeline::ReflectedStage;
 use crate::cost::{self, CostSubject, permutations};
 use crate::diagnostic::{Diagnostics, nearest_name};
-use crate::generate::{MemorySink, Request, Root, Tools, entry_points, generate};
+use crate::generate::{MemorySink, Optimiser, Request, Root, Tools, entry_points, generate};
 use crate::input::read_file;
 use crate::lint;
 use crate::permute::{Manifest, Quoted, cover};
 use crate::project;
 use crate::resolve::{Graph, Packages};
 use crate::source::SourceSet;
+use crate::spirv_opt::SpirvOpt;
 use crate::tools::SPIRV_VAL;
 use crate::validate::validate_every;
 
@@ -127,7 +128,8 @@ fn file_subjects(
         arguments.input.compose(file, SourceSet::default(), form)?;
     let ErrorContext { graph, settings, options, .. } = &context;
     let conventions = arguments.conventions.chosen().or(context.conventions);
-    let root = Root { graph, settings, options, conventions, numbers: &context.numbers };
+    let (optimiser, numbers): (Option<&dyn Optimiser>, _) = (Some(&SpirvOpt), &*context.numbers);
+    let root = Root { graph, settings, options, conventions, optimiser, numbers };
     let of_sources = |errors| Failure::Input(sources.clone(), context.explain(errors));
     let entries = entry_points(&composed).map_err(of_sources)?;
     if entries.is_empty() {
@@ -323,7 +325,13 @@ pub fn permutations_of(
 ) -> Result<(Vec<Axis>, Vec<CostSubject>), Failure> {
     let (memory, bar) = (MemorySink::default(), Bar::new());
     let progress = |progress| bar.show(progress);
-    let tools = Tools { sink: &memory, cache, tool: crate::TOOL, progress: &progress };
+    let tools = Tools {
+        sink: &memory,
+        cache,
+        tool: crate::TOOL,
+        optimiser: Some(&SpirvOpt),
+        progress: &progress,
+    };
     let generated = generate(sources, packages, manifest, request, &tools);
     bar.clear();
     let generated =

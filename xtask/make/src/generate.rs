@@ -115,6 +115,8 @@ impl Run {
             request: &self.request,
             packages: &self.packages,
             out: &self.out,
+            // Every program of the library has the default form.
+            optimiser: None,
         }
     }
 
@@ -143,6 +145,7 @@ impl Run {
             sink: &writer,
             cache: Some(&self.cache),
             tool: lamplight::TOOL,
+            optimiser: None,
             progress: &|Progress { stage, done, total }| show_progress(&stage, done, total),
         };
         let generated =

@@ -30,6 +30,7 @@ const OF_GROUPS: &[(&str, &[&str])] = &[
     ("robust", &[]),
     ("scale", &[]),
     ("shaderlib", VALIDATORS),
+    ("spirv_forms", VALIDATORS),
     ("tables", &[]),
     ("traps", &[]),
 ];

@@ -186,6 +186,21 @@ pub fn manifest(root: &Path, sources: &mut SourceSet) -> Result<Option<Manifest>
     Ok(Some(manifest))
 }
 
+/// As [`manifest`], without the lists that decide which permutations there are: for callers that
+/// choose one themselves. Mistakes in these lists are not found.
+pub fn manifest_outline(
+    root: &Path,
+    sources: &mut SourceSet,
+) -> Result<Option<Manifest>, Diagnostics> {
+    let Some(path) = place::manifest_of(root) else { return Ok(None) };
+    let mut manifest = read_with(&path, sources, &|package, name, sources| {
+        let id = manifest_text(package, name, sources)?;
+        manifest::parse_outline(sources, id)
+    })?;
+    manifest.adopt(features(root, sources)?);
+    Ok(Some(manifest))
+}
+
 /// The features that the package's `wesl.toml` declares, and those of its dependencies.
 pub fn features(root: &Path, sources: &mut SourceSet) -> Result<Features, Diagnostics> {
     dependencies::features(root, sources)
@@ -193,6 +208,17 @@ pub fn features(root: &Path, sources: &mut SourceSet) -> Result<Features, Diagno
 
 /// Reads a manifest by its path. Its files are named from the package's root.
 pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, Diagnostics> {
+    read_with(path, sources, &parse_manifest)
+}
+
+/// How a manifest of a package is read.
+type Parse<'p> = dyn Fn(&Package, &str, &mut SourceSet) -> Result<Manifest, Diagnostics> + 'p;
+
+fn read_with(
+    path: &Path,
+    sources: &mut SourceSet,
+    parse: &Parse<'_>,
+) -> Result<Manifest, Diagnostics> {
     if path.is_dir() {
         return Err(vec![Diagnostic::error(
             codes::UNREADABLE,
@@ -203,7 +229,7 @@ pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, D
     let disk = Disk::new(folder).map_err(|error| vec![unreadable_file(path, &error)])?;
     let package = Package { name: String::new(), files: Box::new(disk) };
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let mut manifest = parse_manifest(&package, &name, sources)?;
+    let mut manifest = parse(&package, &name, sources)?;
     place::below_root(&mut manifest.programs, folder)?;
     Ok(manifest)
 }
@@ -279,13 +305,14 @@ pub fn cache_folder(manifest: &Path) -> Option<PathBuf> {
     Some(variable("XDG_CACHE_HOME").or_else(|| Some(variable("HOME")?.join(".cache")))?.join(NAME))
 }
 
-fn parse_manifest(
+/// The text of a manifest.
+fn manifest_text(
     package: &Package,
     name: &str,
     sources: &mut SourceSet,
-) -> Result<Manifest, Diagnostics> {
+) -> Result<SourceId, Diagnostics> {
     let id = source::read(sources, package, name).map_err(|error| vec![error.into()])?;
-    let id = id.ok_or_else(|| {
+    id.ok_or_else(|| {
         vec![
             Diagnostic::error(
                 codes::UNREADABLE,
@@ -293,7 +320,15 @@ fn parse_manifest(
             )
             .note("help: `lamplight init` writes a package that has one"),
         ]
-    })?;
+    })
+}
+
+fn parse_manifest(
+    package: &Package,
+    name: &str,
+    sources: &mut SourceSet,
+) -> Result<Manifest, Diagnostics> {
+    let id = manifest_text(package, name, sources)?;
     let mut manifest = manifest::parse(sources, id)?;
     let mut lists: Vec<(String, SourceId)> = Vec::new();
     for program in &mut manifest.programs {

@@ -18,7 +18,7 @@ use crate::plain::{self, Needs};
 use crate::reflect::{binding_kind, entry_inputs};
 use crate::slots::{Numbering, UsedBinding, assign_slots, native_reflection};
 use crate::text::BoundedText;
-use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, setters, zeros};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, ends, setters, zeros};
 use crate::{columns, lacks, lists, located, rename, rows};
 use lamplight_bundle::{BindingKind, HeapSampler, Native, Place, SamplerHeap, Semantic, Target};
 
@@ -108,6 +108,8 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         enclosed_bytes: true,
         ..Needs::default()
     };
+    let counted = ends::with_counters(source)?;
+    let source = &source.with_analysed(counted.as_ref());
     let plain = plain::with_plain_forms(source.module, source.info, needs)?;
     let (module, info) =
         plain.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
@@ -136,7 +138,7 @@ fn writer_options(source: &EmitSource<'_>) -> Result<Options, String> {
         shader_model: ShaderModel::V5_1,
         fake_missing_bindings: false,
         restrict_indexing: source.is_restricted(),
-        force_loop_bounding: source.is_restricted(),
+        force_loop_bounding: false,
         ..Options::default()
     };
     for (UsedBinding { place: binding, kind, count }, _) in assign_slots(source, Numbering::Author) {

@@ -13,7 +13,7 @@ use naga::back::msl::{
 use crate::names::first_entry_name;
 use crate::slots::{Numbering, UsedBinding, assign_slots, native_reflection};
 use crate::text::BoundedText;
-use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, fractions, gradients, invariants, packed, plain, rename};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, ends, fractions, gradients, invariants, packed, plain, rename};
 use crate::plain::Needs;
 use lamplight_validate::BINDING_ARRAYS;
 use lamplight_bundle::{BindingKind, BufferSizes, Target};
@@ -43,6 +43,8 @@ pub const TARGET: TargetEntry = TargetEntry {
 const SIZES_BUFFER: u8 = 30;
 
 fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
+    let counted = ends::with_counters(source)?;
+    let source = &source.with_analysed(counted.as_ref());
     let plainer = invariants::without_invariant_inputs(source.module, source.stage);
     let source = &EmitSource { module: plainer.as_ref().unwrap_or(source.module), ..*source };
     let needs = Needs { enclosed_bytes: true, ..Needs::default() };
@@ -55,7 +57,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         per_entry_point_map: BTreeMap::from([(source.entry.to_owned(), entry_resources(source)?)]),
         fake_missing_bindings: false,
         bounds_check_policies: source.bounds_policies(),
-        force_loop_bounding: source.is_restricted(),
+        force_loop_bounding: false,
         ..Options::default()
     };
     let pipeline = PipelineOptions {

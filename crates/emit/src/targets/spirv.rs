@@ -9,7 +9,7 @@ use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::slots::{Numbering, native_reflection};
 use crate::spirv::{HEADER_WORDS, SpirvInstruction, bytes, instructions, op};
-use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, descriptors, lacks, sample_mask, short_storage, workgroups};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, descriptors, ends, lacks, sample_mask, short_storage, workgroups};
 use lamplight_validate::BINDING_ARRAYS;
 use lamplight_bundle::Target;
 
@@ -40,11 +40,13 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     if let Some(reason) = lacks::spirv_lack(source.module) {
         return Err(reason);
     }
+    let counted = ends::with_counters(source)?;
+    let source = &source.with_analysed(counted.as_ref());
     let options = Options {
         lang_version: (1, 0),
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
         bounds_check_policies: source.bounds_policies(),
-        force_loop_bounding: source.is_restricted(),
+        force_loop_bounding: false,
         ..Options::default()
     };
     let pipeline =

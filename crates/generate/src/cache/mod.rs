@@ -65,6 +65,8 @@ pub struct CompileJob<'a> {
     pub targets: &'a [Target],
     /// The clip space and the checks of its outputs.
     pub conventions: Conventions,
+    /// The version of the program that optimises its outputs, if one does.
+    pub optimiser: Option<&'a str>,
 }
 
 /// The result of compiling a text: a unit, and the warnings for its author.
@@ -193,10 +195,10 @@ fn record_name(kind: &str, key: Hash) -> String {
 }
 
 fn unit_key(build: &str, job: CompileJob<'_>) -> Hash {
-    let CompileJob { text, composed, entry, options, targets, conventions } = job;
+    let CompileJob { text, composed, entry, options, targets, conventions, optimiser } = job;
     let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
     let rest = format!(
-        "{:?} {:?} {options:?} {entry:?} {names:?} {conventions:?}",
+        "{:?} {:?} {options:?} {entry:?} {names:?} {conventions:?} {optimiser:?}",
         composed.language, composed.stage
     );
     hash_parts(&["unit", build, &rest, text])

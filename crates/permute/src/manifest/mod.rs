@@ -54,7 +54,7 @@ use toml::de::DeTable;
 
 use lamplight_diagnostic::source::{SourceId, SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
-use reader::ManifestReader;
+use reader::{Depth, ManifestReader};
 
 /// What a manifest declares.
 #[derive(Debug, Clone)]
@@ -87,11 +87,22 @@ impl Manifest {
 /// Reads a manifest that is in the set. Every mistake in it is reported, at its place, except
 /// those that only follow from another; warnings come with errors too.
 pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Manifest, Diagnostics> {
+    parse_to(Depth::Whole, sources, id)
+}
+
+/// As [`parse`], without the lists that decide which permutations there are, and without lints and
+/// limits: for callers that choose a permutation themselves. The spaces of its programs are outlines
+/// ([`Space::outline`](super::Space::outline)).
+pub fn parse_outline(sources: &SourceSet, id: SourceId) -> Result<Manifest, Diagnostics> {
+    parse_to(Depth::Outline, sources, id)
+}
+
+fn parse_to(depth: Depth, sources: &SourceSet, id: SourceId) -> Result<Manifest, Diagnostics> {
     let (document, errors) = DeTable::parse_recoverable(&sources.get(id).text);
     if !errors.is_empty() {
         return Err(errors.iter().map(|error| syntax_error(sources, id, error)).collect());
     }
-    let mut reader = ManifestReader::new(sources, id);
+    let mut reader = ManifestReader { depth, ..ManifestReader::new(sources, id) };
     let programs = read_programs(&mut reader, document.get_ref());
     let features = features::read_features(&mut reader, document.get_ref());
     let glsl = glsl::read_glsl(&mut reader, document.get_ref());

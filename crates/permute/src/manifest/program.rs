@@ -2,12 +2,14 @@
 
 use toml::de::DeTable;
 
-use super::reader::{ManifestReader, TomlName, TomlValue};
+use super::reader::{Depth, ManifestReader, TomlName, TomlValue};
 use super::{axes, lists, names};
 use crate::axis::Axis;
 use crate::space::{Constraint, SliceLists, Space, TooComplex};
 use crate::{lint, report};
-use lamplight_bundle::{BoundsChecks, ClipConvention, Convention, Conventions, SourceClip, Target};
+use lamplight_bundle::{
+    BoundsChecks, ClipConvention, Convention, Conventions, SourceClip, SpirvForm, Target,
+};
 use lamplight_diagnostic::source::{LIMITS, Span};
 use lamplight_diagnostic::{Diagnostic, Severity, codes};
 
@@ -75,6 +77,7 @@ const KEYS: &[&str] = &[
     "clip",
     "source_clip",
     "bounds",
+    "spirv",
     "axis",
     "constraint",
     "include",
@@ -120,7 +123,9 @@ pub fn read_program(
     space.undeclared = undeclared;
     let program =
         Program { name, doc, wesl, glsl, targets, conventions, space, usage, limit: limit?, span };
-    check_limit(reader, &program);
+    if reader.depth == Depth::Whole {
+        check_limit(reader, &program);
+    }
     (self::error_count(reader) == errors).then_some(program)
 }
 
@@ -182,10 +187,15 @@ fn read_conventions(reader: &mut ManifestReader, table: &DeTable) -> Conventions
         let unknown = (codes::UNKNOWN_CLIP, ["there is no clip space", "not one", "clip spaces"]);
         reader.choice(value, "`source_clip`", SourceClip::ALL.iter().copied(), unknown)
     });
+    let spirv = table.get("spirv").and_then(|value| {
+        let unknown = (codes::UNKNOWN_SPIRV, ["there is no form of SPIR-V", "not one", "forms"]);
+        reader.choice(value, "`spirv`", SpirvForm::ALL.iter().copied(), unknown)
+    });
     Conventions {
         clip: clip.unwrap_or_default(),
         source_clip: source_clip.unwrap_or_default(),
         bounds: bounds.unwrap_or_default(),
+        spirv: spirv.unwrap_or_default(),
     }
 }
 
@@ -234,6 +244,9 @@ fn read_space(
     let constraints = table
         .get("constraint")
         .map_or(Vec::new(), |value| axes::read_constraints(reader, &axes, value));
+    if reader.depth == Depth::Outline {
+        return (error_count(reader) == before).then(|| Space::outline(axes, constraints));
+    }
     let only = table.get("only").map_or(Vec::new(), |value| lists::read_only(reader, &axes, value));
     let exclude =
         table.get("exclude").map_or(Vec::new(), |value| lists::read_exclude(reader, &axes, value));

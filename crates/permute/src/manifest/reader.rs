@@ -13,16 +13,26 @@ use lamplight_diagnostic::{Code, Diagnostic, codes};
 pub type TomlValue<'t> = Spanned<DeValue<'t>>;
 pub type TomlName<'t> = Spanned<DeString<'t>>;
 
+/// How much of a manifest is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Depth {
+    /// All of it.
+    Whole,
+    /// Without what decides which permutations there are: lists, lints and limits.
+    Outline,
+}
+
 /// The manifest being read and what was found wrong with it.
 pub struct ManifestReader<'s> {
     pub sources: &'s SourceSet,
     pub id: SourceId,
+    pub depth: Depth,
     pub problems: Vec<Diagnostic>,
 }
 
 impl<'s> ManifestReader<'s> {
     pub fn new(sources: &'s SourceSet, id: SourceId) -> Self {
-        Self { sources, id, problems: Vec::new() }
+        Self { sources, id, depth: Depth::Whole, problems: Vec::new() }
     }
 
     /// A range of the manifest.

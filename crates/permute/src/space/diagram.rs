@@ -53,6 +53,12 @@ impl Diagram {
         Ok(Self { order, nodes, root })
     }
 
+    /// A set without points.
+    pub fn empty(order: Vec<usize>) -> Self {
+        let end = DiagramNode { level: u8::MAX, children: Box::default() };
+        Self { order, nodes: vec![end.clone(), end], root: DEAD }
+    }
+
     /// How many points it has; `u128::MAX` for that many or more.
     pub fn count(&self) -> u128 {
         self.counts(|_, children, counts| Ok(sum_counts(children, counts))).unwrap_or(0)

@@ -7,7 +7,7 @@ mod formula;
 pub use formula::ConstraintFormula;
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::axis::{Axis, AxisKind, Mode, ValueSet};
 use super::key::{Assignment, Key};
@@ -87,8 +87,10 @@ pub struct Space {
     axes: Vec<Axis>,
     constraints: Vec<Constraint>,
     lists: SliceLists,
-    valid: Diagram,
-    wanted: Diagram,
+    /// The valid points, once somebody asks for them.
+    valid: OnceLock<Diagram>,
+    /// The wanted ones.
+    wanted: OnceLock<Diagram>,
     /// [`Settings::enums`] at every point.
     enums: Arc<BTreeMap<String, Vec<String>>>,
     /// [`Settings::undeclared`] at every point.
@@ -112,18 +114,40 @@ impl Space {
         } else {
             build_diagram(&axes, &constraints, &lists, order)?
         };
+        let space = Self { lists, ..Self::outline(axes, constraints) };
+        Ok(Self { valid: valid.into(), wanted: wanted.into(), ..space })
+    }
+
+    /// The space without lists, for callers that choose a point themselves. Which points are valid
+    /// is found out only if somebody asks.
+    pub fn outline(axes: Vec<Axis>, constraints: Vec<Constraint>) -> Self {
         let enums = axes.iter().filter(|axis| axis.kind == AxisKind::Enum);
         let enums = enums.map(|axis| (axis.name.clone(), axis.value_names())).collect();
-        Ok(Self {
+        Self {
             enums: Arc::new(enums),
             axes,
             constraints,
-            lists,
-            valid,
-            wanted,
+            lists: SliceLists::default(),
+            valid: OnceLock::new(),
+            wanted: OnceLock::new(),
             undeclared: None,
             features: BTreeMap::new(),
+        }
+    }
+
+    /// The valid points. An outline whose constraints are too complex has none.
+    fn valid(&self) -> &Diagram {
+        self.valid.get_or_init(|| {
+            let order = axis_order(self.axes.len(), &self.constraints);
+            let lists = SliceLists::default();
+            build_diagram(&self.axes, &self.constraints, &lists, order.clone())
+                .unwrap_or_else(|TooComplex| Diagram::empty(order))
         })
+    }
+
+    /// The wanted points. An outline has no lists, so all its valid points are.
+    fn wanted(&self) -> &Diagram {
+        self.wanted.get_or_init(|| self.valid().clone())
     }
 
     /// The axes, by name.
@@ -155,36 +179,36 @@ impl Space {
 
     /// Points that satisfy the constraints.
     pub fn valid_count(&self) -> u128 {
-        self.valid.count()
+        self.valid().count()
     }
 
     /// Points that satisfy the constraints and are wanted: the permutations.
     pub fn count(&self) -> u128 {
-        self.wanted.count()
+        self.wanted().count()
     }
 
     /// How many permutations would be left if the axis did not exist: those that differ only in it
     /// count as one.
     pub fn count_without(&self, axis: usize) -> Result<u128, TooComplex> {
-        self.wanted.count_without(axis)
+        self.wanted().count_without(axis)
     }
 
     /// Every permutation in canonical order: a mixed-radix count with the first axis as its most
     /// significant digit. There are [`Self::count`] of them, so ask that first.
     pub fn enumerate(&self) -> Vec<Assignment> {
-        let mut points = self.wanted.points();
+        let mut points = self.wanted().points();
         points.sort();
         points
     }
 
     /// Whether the point is a permutation.
     pub fn contains(&self, point: &Assignment) -> bool {
-        self.wanted.contains(point)
+        self.wanted().contains(point)
     }
 
     /// Whether the point satisfies the constraints.
     pub fn is_valid(&self, point: &Assignment) -> bool {
-        self.valid.contains(point)
+        self.valid().contains(point)
     }
 
     /// The constraints that the point breaks.
@@ -194,7 +218,7 @@ impl Space {
 
     /// For each axis the values that occur in a valid point.
     pub fn valid_values(&self) -> Vec<ValueSet> {
-        self.valid.used()
+        self.valid().used()
     }
 
     /// A valid point with the pinned `(axis, ordinal)` pairs; `choose` picks each ordinal among
@@ -206,17 +230,17 @@ impl Space {
     ) -> Option<Assignment> {
         let mut allowed = axis_domains(&self.axes);
         pins.iter().for_each(|(axis, ordinal)| allowed[*axis] = ValueSet::single(*ordinal));
-        self.valid.pick(&allowed, choose)
+        self.valid().pick(&allowed, choose)
     }
 
     /// Steps that [`Self::meets`] takes.
     pub fn steps_of_meeting(&self) -> usize {
-        self.valid.nodes()
+        self.valid().nodes()
     }
 
     /// Whether some valid point is in the slice.
     pub fn meets(&self, slice: &Slice) -> bool {
-        self.valid.meets(&slice.values)
+        self.valid().meets(&slice.values)
     }
 
     /// How many points of the full product satisfy one condition, within the steps that are left.

@@ -16,6 +16,7 @@ use libtest_mimic::{Failed, Trial};
 use lamplight_testing::random::Random;
 
 use super::key_laws::{grown, keys_round_trip, keys_survive_growth, loader_and_tools_read_alike};
+use super::outlines;
 use super::random::{NOWHERE, axis, constraint, is_valid, is_wanted, ordinals, product, space};
 
 type Law = fn() -> Result<(), Failed>;
@@ -31,6 +32,8 @@ const LAWS: &[(&str, Law)] = &[
     ("huge_space_answers_at_once", huge_space_answers_at_once),
     ("entangled_space_is_refused", entangled_space_is_refused),
     ("lock_is_stable", lock_is_stable),
+    ("outlines_of_spaces", outlines::of_spaces),
+    ("outlines_of_manifests", outlines::of_manifests),
     ("read_tree_finds_what_composes_alike", read_tree_finds_what_composes_alike),
     ("read_tree_refuses_contradictions", read_tree_refuses_contradictions),
     ("hostile_constraints_end", hostile_constraints_end),
