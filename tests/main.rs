@@ -35,6 +35,7 @@ mod frames;
 mod generate;
 mod glsl_values;
 mod glslang;
+mod gltf;
 mod guide;
 mod harness;
 mod hostile;
@@ -98,6 +99,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     energy::tests,
     examples::tests,
     frames::tests,
+    gltf::tests,
     generate::tests,
     guide::tests,
     harness::tests,
