@@ -5,7 +5,7 @@
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Vec3Swizzles as _};
 use serde_json::Value;
 
-use super::brdf::{Choices, Surface};
+use super::brdf::{Choices, Lobe, Surface};
 use super::model::{Drawn, Model, Pixels, local};
 
 /// A vertex in the world.
@@ -155,11 +155,14 @@ impl<'m> Scene<'m> {
             return surface.base;
         }
         const STEPS: usize = 20;
-        let albedos = match self.choices.multiple {
-            true => [surface.lobe(self.choices), surface.coat_lobe(self.choices)]
-                .map(|lobe| lobe.albedo(surface.view, STEPS)),
-            false => [1.0; 2],
+        let albedo = |lobe: Lobe, counts: bool| match counts && self.choices.multiple {
+            true => lobe.albedo(surface.view, STEPS),
+            false => 1.0,
         };
+        let albedos = [
+            albedo(surface.lobe(self.choices), true),
+            albedo(surface.coat_lobe(self.choices), surface.clearcoat > 0.0),
+        ];
         let lit = self.lamps.iter().map(|lamp| {
             let (l, arriving) = lamp.arriving(place);
             if arriving == DVec3::ZERO {
