@@ -40,6 +40,25 @@ pub fn rows() -> Vec<Row> {
                 info["texCoord"] = json!(1);
             })
         }),
+        row(
+            "two_sets",
+            "3.9.2",
+            "textures of one material with a set each: drawn into the first",
+            || {
+                let mut mesh = bulging();
+                let turned = mesh.uvs[0].iter().flatten().map(|[u, v]| [*v, 0.3 + 0.5 * *u]);
+                mesh.uvs[1] = Some(turned.collect());
+                textured(mesh, |index| {
+                    let emission = json!({ "index": index, "texCoord": 1 });
+                    let mut material = plain(
+                        json!({ "emissiveFactor": [0.6, 0.5, 0.4], "emissiveTexture": emission }),
+                    );
+                    material["pbrMetallicRoughness"]["baseColorTexture"] =
+                        json!({ "index": index });
+                    material
+                })
+            },
+        ),
         row("wrap_repeat", "3.8.4.4", "the image again", || {
             colored(json!({ "wrapS": 10497, "wrapT": 10497 }), larger)
         }),

@@ -79,7 +79,7 @@ fn mirror_winding(mut shape: Shape) -> Shape {
 }
 
 /// The indices of triangles, three for each; `None` for points and lines.
-fn triangle_indices(
+pub fn triangle_indices(
     reader: &mut GltfReader<'_>,
     primitive: &gltf::Primitive<'_>,
     place: &str,

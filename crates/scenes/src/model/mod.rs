@@ -6,6 +6,7 @@
 //! names its place in the document. All memory is bounded by [`limits`](lamplight_files::limits).
 
 mod accessor;
+mod bake;
 mod base;
 mod channels;
 mod deform;

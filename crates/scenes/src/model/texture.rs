@@ -10,6 +10,7 @@ use gltf::image::Source;
 use image::{DynamicImage, ImageDecoder as _, ImageError};
 
 use super::GltfReader;
+use super::bake::{triangles_of, unwrapped};
 use super::files::uri_bytes;
 use super::mesh::{has_triangles, mesh_coordinates};
 use super::nodes::PlacedNodes;
@@ -64,6 +65,14 @@ impl Cell {
         if self.is_shared { at } else { part.coordinates.texture_from_set().transform_point2(at) }
     }
 
+    /// Where in the cell coordinates of its own set are, in [0, 1].
+    fn place(&self, uv: DVec2) -> DVec2 {
+        if !self.is_framed {
+            return (uv - self.window.low) / self.window.size;
+        }
+        FRAME + (1.0 - 2.0 * FRAME) * self.window.share(uv)
+    }
+
     /// Whether the sampler can repeat the cell as its only texture.
     fn is_repeated(parts: &[ImageChannels]) -> bool {
         parts.iter().all(|part| part.wraps == [Wrap::Repeat; 2])
@@ -100,11 +109,8 @@ pub fn texture_sheet(reader: &mut GltfReader<'_>, placed: &PlacedNodes) -> Resul
             if part.coordinates.set == cell.own.set {
                 place_image(map, part, &image, place, |share| cell.in_texture(part, share));
             } else {
-                let what = "textures with other coordinates than the first one of their material \
-                    count with their mean";
-                reader.notes.insert(what.to_owned());
-                let mean = blank_map([1; 2], image.mean());
-                place_image(map, part, &mean, place, |_| DVec2::ZERO);
+                let found = other_set(reader, placed, (parts, cell), part, [width, height])?;
+                place_other(map, part, &image, place, found);
             }
         }
     }
@@ -116,6 +122,54 @@ pub fn texture_sheet(reader: &mut GltfReader<'_>, placed: &PlacedNodes) -> Resul
     let single = sizes.iter().filter(|(_, cell)| !cell.is_fine).map(|(name, _)| *name).collect();
     let maps = Some(Maps { base, normal, occlusion, light, material: maps, single });
     Ok(Sheet { maps, names, cells })
+}
+
+/// Where each pixel of a cell is in the set of coordinates of one of its textures, which is not the first
+/// set of the material. If that is nowhere, a note says so: the texture counts with its mean.
+fn other_set(
+    reader: &mut GltfReader<'_>,
+    placed: &PlacedNodes,
+    (parts, cell): (&[ImageChannels], &Cell),
+    part: &ImageChannels,
+    size: [usize; 2],
+) -> Result<Option<Vec<Option<DVec2>>>, String> {
+    let pixels = DVec2::new(size[0] as f64, size[1] as f64);
+    let mut triangles = triangles_of(reader, placed, parts, [cell.own, part.coordinates])?;
+    for [first, _] in triangles.iter_mut().flatten() {
+        *first = cell.place(*first) * pixels - 0.5;
+    }
+    // A bent normal has its directions from the first set.
+    let found = if part.map == "normal_map" { None } else { unwrapped(&triangles, size) };
+    if found.is_none() {
+        let what = "textures with other coordinates than the first one of their material count with \
+            their mean, where triangles share places of the first one";
+        reader.notes.insert(what.to_owned());
+    }
+    Ok(found)
+}
+
+/// Writes the channels of an image into a cell by the coordinates of each pixel, and the image's mean
+/// where there are none.
+fn place_other(
+    map: &mut TextureMap,
+    part: &ImageChannels,
+    image: &TextureMap,
+    (at, size): ([usize; 2], [usize; 2]),
+    found: Option<Vec<Option<DVec2>>>,
+) {
+    place_image(map, part, &blank_map([1; 2], image.mean()), (at, size), |_| DVec2::ZERO);
+    let pixels = DVec2::new(image.width as f64, image.height as f64);
+    for (index, uv) in found.into_iter().flatten().enumerate() {
+        let Some(uv) = uv else { continue };
+        let place = uv * pixels;
+        let own =
+            if part.is_blocky { pixel_at(image, part, place) } else { between(image, part, place) };
+        let own = part.scaled(own);
+        let (x, y) = (at[0] + index % size[0], at[1] + index / size[0]);
+        for channel in part.channels {
+            map.texels[y * map.width + x][*channel] = own[*channel];
+        }
+    }
 }
 
 /// The pixels of a cell of a texture.
@@ -143,8 +197,11 @@ fn map_sizes(
             let most = (sheet_side(part.map) / across).clamp(1, LARGEST);
             let [width, height] = image_size(reader, part.image)?;
             let pixels = DVec2::new(width as f64, height as f64) * cell.window.size;
+            // What is drawn triangle by triangle has another size on each.
+            let is_other = part.coordinates.set != cell.own.set;
             let wanted = (LARGER * pixels.max_element()) as usize;
-            let side = wanted.next_power_of_two().max(LEAST).min(most);
+            let least = if is_other { most } else { LEAST };
+            let side = wanted.next_power_of_two().max(least).min(most);
             let own = if is_shown { [width.min(most), height.min(most)] } else { [side; 2] };
             let found: &mut CellSize = sizes.entry(part.map).or_default();
             found.size = [found.size[0].max(own[0]), found.size[1].max(own[1])];
@@ -235,14 +292,12 @@ impl Sheet {
         let across = cells_across(self.cells.len());
         let parts = material_parts(reader, material)?;
         let Some(cell) = self.cells.get(&parts) else { return Ok(shape) };
+        // The window of a single cell is repeated by the sampler.
         if !cell.is_framed {
-            // The window of a single cell is repeated by the sampler.
-            let window = cell.window;
-            return Ok(shape.map(|vertex| vertex.uv = (vertex.uv - window.low) / window.size));
+            return Ok(shape.map(|vertex| vertex.uv = cell.place(vertex.uv)));
         }
         let corner = DVec2::new((cell.index % across) as f64, (cell.index / across) as f64);
-        let within = |uv: DVec2| FRAME + (1.0 - 2.0 * FRAME) * cell.window.share(uv);
-        Ok(shape.map(|vertex| vertex.uv = (corner + within(vertex.uv)) / across as f64))
+        Ok(shape.map(|vertex| vertex.uv = (corner + cell.place(vertex.uv)) / across as f64))
     }
 }
 
