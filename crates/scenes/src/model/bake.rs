@@ -67,26 +67,21 @@ pub fn unwrapped(triangles: &[TwoSets], size: [usize; 2]) -> Option<Vec<Option<D
         if twice == 0.0 || !twice.is_finite() {
             continue;
         }
-        let low = (a.min(b).min(c) - RIM).max(DVec2::ZERO).as_uvec2();
-        let most = DVec2::new(width as f64, height as f64) - 1.0;
-        let high = (a.max(b).max(c) + RIM).clamp(DVec2::ZERO, most).as_uvec2();
         // A share of a corner falls by this much in a pixel.
         let slopes = [(c - b), (a - c), (b - a)].map(|edge| edge.length() / twice.abs());
-        for (y, x) in (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| (y, x))) {
+        for (y, x) in pixels_around([a, b, c], RIM, size) {
             seen += 1;
             if seen > MOST {
                 return None;
             }
-            let at = DVec2::new(f64::from(x), f64::from(y));
-            let shares = [(b - at).perp_dot(c - at), (c - at).perp_dot(a - at)].map(|s| s / twice);
-            let shares = [shares[0], shares[1], 1.0 - shares[0] - shares[1]];
+            let shares = shares_at([a, b, c], twice, DVec2::new(x as f64, y as f64));
             let is_near = shares.iter().zip(slopes).all(|(share, slope)| *share >= -RIM * slope);
             if !is_near {
                 continue;
             }
             let is_inner = shares.iter().zip(slopes).all(|(share, slope)| *share >= 0.5 * slope);
             let own: DVec2 = triangle.iter().zip(shares).map(|(corner, s)| corner[1] * s).sum();
-            let pixel = &mut found[y as usize * width + x as usize];
+            let pixel = &mut found[y * width + x];
             inner += usize::from(is_inner);
             match pixel {
                 Some((other, true)) if is_inner && other.distance(own) > 1e-3 => clashes += 1,
@@ -98,6 +93,26 @@ pub fn unwrapped(triangles: &[TwoSets], size: [usize; 2]) -> Option<Vec<Option<D
     }
     let is_flat = 100 * clashes <= inner;
     is_flat.then(|| found.into_iter().map(|own| own.map(|(own, _)| own)).collect())
+}
+
+/// The pixels in and around a triangle, row and column.
+fn pixels_around(
+    [a, b, c]: [DVec2; 3],
+    rim: f64,
+    [width, height]: [usize; 2],
+) -> impl Iterator<Item = (usize, usize)> {
+    let most = DVec2::new(width as f64, height as f64) - 1.0;
+    let low = (a.min(b).min(c) - rim).clamp(DVec2::ZERO, most).as_uvec2();
+    let high = (a.max(b).max(c) + rim).clamp(DVec2::ZERO, most).as_uvec2();
+    let columns = move |y: u32| (low.x..=high.x).map(move |x| (y as usize, x as usize));
+    (low.y..=high.y).flat_map(columns)
+}
+
+/// The shares of a triangle's corners at a place. `twice` is twice its area.
+fn shares_at([a, b, c]: [DVec2; 3], twice: f64, at: DVec2) -> [f64; 3] {
+    let first = (b - at).perp_dot(c - at) / twice;
+    let second = (c - at).perp_dot(a - at) / twice;
+    [first, second, 1.0 - first - second]
 }
 
 #[cfg(test)]
