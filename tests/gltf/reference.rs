@@ -454,8 +454,7 @@ impl Pixels {
 /// The triangles of a mesh in the world. Normals that are absent are those of the faces, and tangents those of
 /// the coordinates (3.7.2.1): along u, with a bitangent against v, which points down in the image.
 fn triangles(drawn: &Drawn) -> Vec<Triangle> {
-    let Drawn { mesh, world } = drawn;
-    let linear = DMat3::from_mat4(*world);
+    let (mesh, world, linear) = (&drawn.mesh, drawn.world, DMat3::from_mat4(drawn.world));
     let of_normals = linear.inverse().transpose();
     let mirrored = linear.determinant() < 0.0;
     let list = mesh.indices.clone().unwrap_or_else(|| (0..mesh.positions.len() as u32).collect());
@@ -498,19 +497,26 @@ fn triangles(drawn: &Drawn) -> Vec<Triangle> {
             corners.iter_mut().for_each(|corner| corner.normal = ab.cross(ac).normalize());
         }
         if mesh.tangents.is_none() || mesh.normals.is_none() {
-            let (s, t) = (b.uv[0] - a.uv[0], c.uv[0] - a.uv[0]);
-            let area = s.perp_dot(t);
-            let (along, down) = ((ab * t.y - ac * s.y) / area, (ac * s.x - ab * t.x) / area);
-            for corner in &mut corners {
-                let n = corner.normal;
-                let flat = (along - n * n.dot(along)).normalize_or_zero();
-                let sign = if n.cross(flat).dot(down) > 0.0 { -1.0 } else { 1.0 };
-                corner.tangent = flat.extend(sign);
-            }
+            set_tangents(&mut corners);
         }
         Triangle { corners, material: mesh.material }
     };
     list.chunks_exact(3).map(triangle).collect()
+}
+
+/// Tangents along u, whose bitangents are against v.
+fn set_tangents(corners: &mut [Corner; 3]) {
+    let [a, b, c] = *corners;
+    let (ab, ac) = (b.position - a.position, c.position - a.position);
+    let (s, t) = (b.uv[0] - a.uv[0], c.uv[0] - a.uv[0]);
+    let area = s.perp_dot(t);
+    let (along, down) = ((ab * t.y - ac * s.y) / area, (ac * s.x - ab * t.x) / area);
+    for corner in corners {
+        let n = corner.normal;
+        let flat = (along - n * n.dot(along)).normalize_or_zero();
+        let sign = if n.cross(flat).dot(down) > 0.0 { -1.0 } else { 1.0 };
+        corner.tangent = flat.extend(sign);
+    }
 }
 
 /// All nodes of the scene with their places in the world.

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::{PRINTED, Row, beside, bulging, extended, metal, plain, row, textured};
 use crate::gltf::model::{Mesh, Model};
 
-pub fn rows() -> Vec<Row> {
+fn rows_first() -> Vec<Row> {
     vec![
         row("base_color_factor", "3.9.2", "multiplied with texture and vertex colour", || {
             Model::of(bulging(), plain(json!({})))
@@ -44,6 +44,11 @@ pub fn rows() -> Vec<Row> {
             Model::of(bulging(), metal(0.0))
         })
         .differs("highlights of lamps are never narrower than those of roughness 0.045"),
+    ]
+}
+
+fn rows_second() -> Vec<Row> {
+    vec![
         row("metallic_roughness_texture", "3.9.2", "metal in blue, roughness in green", || {
             textured(bulging(), |index| {
                 let mut material = metal(0.9);
@@ -74,6 +79,11 @@ pub fn rows() -> Vec<Row> {
             Model::of(bulging(), material)
         }),
         row("alpha_blend", "3.9.4", "over what is behind, sorted at each pixel", blended),
+    ]
+}
+
+fn rows_third() -> Vec<Row> {
+    vec![
         row("alpha_blend_with_mask", "3.9.4", "both in one model; vertex alpha counts", || {
             let mut model = blended();
             let mut material = plain(json!({ "alphaMode": "MASK" }));
@@ -101,22 +111,29 @@ pub fn rows() -> Vec<Row> {
                 material
             })
         }),
-        row(
-            "unlit_beside_lit",
-            "KHR_materials_unlit",
-            "as a surface that emits its colour",
-            || {
-                let mut model = Model::of(bulging(), plain(json!({})));
-                let texture = model.add_texture(super::pattern(), json!({}));
-                let mut material = extended("KHR_materials_unlit", json!({}));
-                material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": texture });
-                let material = model.add_material(material);
-                let part = Mesh { material, ..bulging() };
-                model.add(part, beside());
-                model
-            },
-        ),
     ]
+}
+
+fn rows_fourth() -> Vec<Row> {
+    vec![row(
+        "unlit_beside_lit",
+        "KHR_materials_unlit",
+        "as a surface that emits its colour",
+        || {
+            let mut model = Model::of(bulging(), plain(json!({})));
+            let texture = model.add_texture(super::pattern(), json!({}));
+            let mut material = extended("KHR_materials_unlit", json!({}));
+            material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": texture });
+            let material = model.add_material(material);
+            let part = Mesh { material, ..bulging() };
+            model.add(part, beside());
+            model
+        },
+    )]
+}
+
+pub fn rows() -> Vec<Row> {
+    [rows_first(), rows_second(), rows_third(), rows_fourth()].concat()
 }
 
 /// Two surfaces before an opaque one, the nearer of which is first in the document and double-sided.
