@@ -36,6 +36,7 @@ mod frames;
 mod generate;
 mod glsl_values;
 mod glslang;
+mod gltf;
 mod guide;
 mod harness;
 mod heat;
@@ -102,6 +103,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     energy::tests,
     examples::tests,
     frames::tests,
+    gltf::tests,
     generate::tests,
     guide::tests,
     harness::tests,

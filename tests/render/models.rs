@@ -356,7 +356,7 @@ fn omissions_are_reported() -> Result<(), Failed> {
         "alphaMode": "BLEND",
     }]);
     let (_, stderr) = drawn(&glb(&document, &buffer), &[])?;
-    for part in ["note: `model.glb`: ", "other coordinates", "transparency"] {
+    for part in ["note: `model.glb`: ", "no `TEXCOORD_1`", "have no shadows"] {
         demand(stderr.contains(part), || format!("expected `{part}` in `{stderr}`"))?;
     }
     Ok(())

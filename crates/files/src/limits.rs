@@ -241,13 +241,15 @@ limits! {
         "time", "more than ... nodes, or nesting deeper than ...";
     MODEL_NESTING: usize = 256, Count, "depth of nested nodes",
         "the stack, against cycles of nodes", "more than ... nodes, or nesting deeper than ...";
-    MODEL_CORNERS: usize = 1 << 20, Count, "vertices of all triangles of a model", "memory",
+    MODEL_CORNERS: usize = 5 << 20, Count, "vertices of all triangles of a model", "memory",
         "more than ... vertices of triangles";
     MODEL_MOVED: usize = 1 << 25, Count, "vertices that morph targets and joints move, for each of these", "time",
         "move more than ... vertices";
-    MODEL_TEXTURES: usize = 64, Count, "sets of textures of a model", "time", "more than ... sets of textures";
+    MODEL_TEXTURES: usize = 1024, Count, "sets of textures of a model", "time", "more than ... sets of textures";
     MODEL_PIXELS: u64 = 1 << 24, Count, "pixels of one of its images", "memory",
         "... pixels are more than ...";
+    MODEL_ALL_PIXELS: u64 = 1_u64 << 32, Count, "pixels of all its images, counted each time that one is decoded",
+        "time", "all images have more than ... pixels";
     CACHE_BYTES: usize = 64 << 20, Bytes, "bytes of a cache record, compressed or not", "memory",
         "no error: the record counts as missing";
     CASE_ROWS: usize = 1 << 20, Count, "inputs of the numeric cases of a file", "memory, time",

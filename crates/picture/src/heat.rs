@@ -73,7 +73,7 @@ impl PreparedPass {
         for slice in std::iter::once(self).chain(&self.farther) {
             let stage = slice.stages.fragment.as_ref().ok_or_else(|| vec![no_frame()])?;
             let view = slice.eye_view([0.0; 2], size).map_err(one)?;
-            let (items, views) = (slice.items(), std::slice::from_ref(&view));
+            let (items, views) = (slice.items().collect::<Vec<_>>(), std::slice::from_ref(&view));
             // As its author wrote it: what is drawn on devices has counters in its loops.
             let entry = EntryPoint { module: &stage.written.module, entry: stage.entry };
             let drawing = slice.drawing(&items, views, size, Some((entry, 1)));

@@ -37,6 +37,7 @@
 //! (`crates/picture/src/strip/`).
 
 pub mod beside;
+mod blend;
 mod controls;
 pub mod figure;
 pub mod frame;

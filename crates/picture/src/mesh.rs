@@ -78,7 +78,7 @@ fn corner_numbers(corner: &Vertex, location: u32, material: u32, count: usize) -
     let numbers = match location {
         0 => corner.position.extend(1.0).to_array(),
         1 => corner.normal.extend(0.0).to_array(),
-        2 => corner.color.extend(1.0).to_array(),
+        2 => corner.color.extend(corner.alpha).to_array(),
         3 => corner.uv.extend(0.0).extend(0.0).to_array(),
         4 => corner.light_uv.extend(0.0).extend(0.0).to_array(),
         5 => corner.tangent.to_array(),

@@ -21,7 +21,8 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_execute::Session;
 use lamplight_execute::fixture::{Fixture, FixtureTexture, TextureKind};
 use lamplight_execute::frame::{Buffers, Face, Frame, Mesh, PipelineState};
-use lamplight_scenes::sets::{Eye, Lamp, Scene};
+use lamplight_permute::Setting;
+use lamplight_scenes::sets::{Eye, Lamp, Object, Scene};
 
 /// What all objects and views of a pass share, by group and binding.
 #[derive(Default)]
@@ -37,6 +38,14 @@ struct Studio<'a> {
     painter: &'a dyn Session,
     programs: &'a Programs,
     values: UniformValues<'a>,
+}
+
+/// Which objects a pass draws.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    All,
+    Opaque,
+    Blended,
 }
 
 /// The smallest and the largest shadow map, in texels along an edge. In between, a map has twice
@@ -104,7 +113,7 @@ pub fn prepare_passes(
         for pass in &plan.passes[..plan.passes.len() - 1] {
             studio.draw(pass, &mut left)?;
         }
-        Ok(PreparedPass { fine, ..studio.ready(last, &left)? })
+        Ok(PreparedPass { fine, ..studio.with_blended(last, &left)? })
     };
     if shot.cascades <= 1 {
         let eye = eye_projection(&scene.eye, shot);
@@ -163,7 +172,7 @@ fn no_cascades(pass: &Pass) -> Diagnostic {
 impl Studio<'_> {
     /// Draws a pass before the last one, and keeps what later passes read.
     fn draw(&self, pass: &Pass, left: &mut Left) -> Result<(), Diagnostics> {
-        let prepared = self.ready(pass, left)?;
+        let prepared = self.ready(pass, left, Part::All)?;
         if self.values.plan.is_of_viewer(pass) {
             return match pass.needs.screen {
                 true => self.draw_over(pass, &prepared, left),
@@ -241,7 +250,7 @@ impl Studio<'_> {
     }
 
     /// A pass with its uniforms, textures and meshes.
-    fn ready(&self, pass: &Pass, left: &Left) -> Result<PreparedPass, Diagnostics> {
+    fn ready(&self, pass: &Pass, left: &Left, part: Part) -> Result<PreparedPass, Diagnostics> {
         let unknown = || {
             vec![Diagnostic::error(
                 codes::UNKNOWN_PROGRAM,
@@ -249,7 +258,14 @@ impl Studio<'_> {
             )]
         };
         let program = self.programs.manifest().program(&pass.program).ok_or_else(unknown)?;
-        let stages = self.programs.stages(program, &pass.settings, self.values.shot.language)?;
+        let mut settings = pass.settings.clone();
+        if part == Part::Blended {
+            // Points of any alpha are blended, also where others are left out by theirs.
+            settings.values.entry("alpha_test".to_owned()).and_modify(|test| {
+                *test = Setting::Bool(false);
+            });
+        }
+        let stages = self.programs.stages(program, &settings, self.values.shot.language)?;
         let bindings = stage_bindings(&stages);
         let camera = bindings.iter().find(|binding| binding.name == "camera").cloned();
         let has_objects = !vertex_attributes(&stages.vertex.reflection).is_empty();
@@ -258,10 +274,11 @@ impl Studio<'_> {
         let plain =
             PLAIN.iter().filter_map(|name| bindings.iter().find(|binding| binding.name == *name));
         let plain = plain.map(|binding| (binding.group, binding.binding)).collect();
-        let items = self.items(pass, &stages, &bindings).map_err(|problem| vec![problem])?;
+        let items = self.items(pass, &stages, &bindings, part).map_err(|problem| vec![problem])?;
         let eye = PassCamera::of_viewer(&self.values.scene.eye, self.values.shot);
         let background = Background::new(&self.values, eye);
-        let state = self.state(pass, camera.is_some());
+        let mut state = self.state(pass, camera.is_some());
+        state.keep_depth |= part != Part::All;
         let encoded = pass.needs.encoded;
         Ok(PreparedPass {
             stages,
@@ -277,7 +294,18 @@ impl Studio<'_> {
             encoded,
             fine: 1,
             farther: Vec::new(),
+            blended: None,
         })
+    }
+
+    /// The pass that draws the picture, with a second one for objects that are blended.
+    fn with_blended(&self, last: &Pass, left: &Left) -> Result<PreparedPass, Diagnostics> {
+        let mut objects = self.values.scene.objects.iter();
+        if last.needs.screen || !objects.any(|object| object.is_blended) {
+            return self.ready(last, left, Part::All);
+        }
+        let blended = Some(Box::new(self.ready(last, left, Part::Blended)?));
+        Ok(PreparedPass { blended, ..self.ready(last, left, Part::Opaque)? })
     }
 
     /// What all objects and views of a pass share.
@@ -338,6 +366,7 @@ impl Studio<'_> {
         pass: &Pass,
         stages: &Stages,
         bindings: &[Binding],
+        part: Part,
     ) -> Result<Vec<(Mesh, Buffers)>, Diagnostic> {
         let vertex = &stages.vertex.reflection;
         if vertex_attributes(vertex).is_empty() {
@@ -350,7 +379,7 @@ impl Studio<'_> {
         let faceted = pass.needs.faceted;
         let of_light = !self.values.plan.is_of_viewer(pass);
         let eye = (!of_light).then_some(self.values.scene.eye.position);
-        let item = |object| {
+        let item = |object: &Object| {
             let buffer = |binding: &&Binding| {
                 let bytes = pack_buffer(binding, &|path| self.values.object(object, path))?;
                 Ok(((binding.group, binding.binding), bytes))
@@ -364,8 +393,18 @@ impl Studio<'_> {
             Ok(Some((mesh, buffers)))
         };
         let objects = self.values.scene.objects.iter();
-        let drawn = objects.filter(|object| object.casts || !of_light);
-        drawn.filter_map(|object| item(object).transpose()).collect()
+        let drawn =
+            objects.filter(|object| object.casts || !of_light).filter(|object| match part {
+                Part::All => true,
+                Part::Opaque => !object.is_blended,
+                Part::Blended => object.is_blended,
+            });
+        let Some(eye) = eye.filter(|_| part == Part::Blended) else {
+            return drawn.filter_map(|object| item(object).transpose()).collect();
+        };
+        // The backs of an object may be behind its fronts.
+        let sides = drawn.flat_map(|object| object.sides_from(eye));
+        sides.filter_map(|object| item(&object).transpose()).collect()
     }
 }
 

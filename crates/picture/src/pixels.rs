@@ -142,10 +142,10 @@ impl Linear {
     }
 
     /// Adds one sample of every pixel, from a picture that was moved by `shift` pixels. `color` gives
-    /// what was drawn at a pixel, counted row by row; `None` for the background.
+    /// what was drawn at a pixel, counted row by row, over a background; `None` for that alone.
     pub fn add(
         &mut self,
-        color: impl Fn(usize) -> Option<[f32; 4]> + Sync,
+        color: impl Fn(usize, &dyn Fn() -> DVec3) -> Option<DVec3> + Sync,
         shift: [f64; 2],
         background: &Background,
         exposure: f64,
@@ -159,8 +159,7 @@ impl Linear {
             let v = (y as f64 + 0.5 + shift[1]) / height;
             for (x, (sum, first)) in sums.iter_mut().zip(first).enumerate() {
                 let behind = || background.color((x as f64 + 0.5 - shift[0]) / width, v);
-                let drawn = color(y * columns + x)
-                    .map(|[r, g, b, _]| DVec3::new(r.into(), g.into(), b.into()));
+                let drawn = color(y * columns + x, &behind);
                 *sum += visible_part(drawn.unwrap_or_else(behind) * factor);
                 if is_first {
                     *first = drawn;

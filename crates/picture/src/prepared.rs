@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::Shot;
+use super::blend::{Slice, seen_color};
 use super::pixels::{Background, Linear};
 use super::values::PassCamera;
 use crate::frame::{ReadyStage, Stages, pack_buffer, probe};
@@ -40,6 +41,8 @@ pub struct PreparedPass {
     /// The same pass for the farther parts of the viewer's depth, nearest first. They are visible
     /// where no nearer part drew anything.
     pub farther: Vec<Self>,
+    /// The same pass for objects that are blended over the others.
+    pub blended: Option<Box<Self>>,
 }
 
 impl PreparedPass {
@@ -78,13 +81,13 @@ impl PreparedPass {
         size: [u32; 2],
         fragment: Option<(EntryPoint<'_>, u32)>,
     ) -> Result<Vec<Frame>, Diagnostics> {
-        let items = self.items();
+        let items: Vec<DrawItem<'_>> = self.items().collect();
         let drawing = self.drawing(&items, views, size, fragment);
         painter.draw_frames(&drawing).map_err(|problem| vec![problem])
     }
 
-    pub(super) fn items(&self) -> Vec<DrawItem<'_>> {
-        self.items.iter().map(|(mesh, buffers)| DrawItem { mesh, buffers }).collect()
+    pub(super) fn items(&self) -> impl Iterator<Item = DrawItem<'_>> {
+        self.items.iter().map(|(mesh, buffers)| DrawItem { mesh, buffers })
     }
 
     pub(super) fn drawing<'d>(
@@ -126,15 +129,34 @@ impl PreparedPass {
         size: [u32; 2],
         location: u32,
     ) -> Result<Vec<Frame>, Diagnostics> {
+        let items: Vec<DrawItem<'_>> = self.items().collect();
+        self.colors_of(&items, painter, (views, size), location)
+    }
+
+    /// Draws some objects into a target of their own.
+    pub(super) fn draw_colors_of(
+        &self,
+        items: &[DrawItem<'_>],
+        painter: &dyn Session,
+        views: &[Buffers],
+        size: [u32; 2],
+    ) -> Result<Vec<Frame>, Diagnostics> {
+        self.colors_of(items, painter, (views, size), 0)
+    }
+
+    fn colors_of(
+        &self,
+        items: &[DrawItem<'_>],
+        painter: &dyn Session,
+        (views, size): (&[Buffers], [u32; 2]),
+        location: u32,
+    ) -> Result<Vec<Frame>, Diagnostics> {
         let stage = self.stages.fragment.as_ref().ok_or_else(|| vec![no_frame()])?;
         let module = probe::bits_module(&stage.validated.module, stage.entry, location)
             .ok_or_else(|| vec![no_frame()])?;
-        self.draw(
-            painter,
-            views,
-            size,
-            Some((EntryPoint { module: &module, entry: stage.entry }, 1)),
-        )
+        let fragment = Some((EntryPoint { module: &module, entry: stage.entry }, 1));
+        let drawing = self.drawing(items, views, size, fragment);
+        painter.draw_frames(&drawing).map_err(|problem| vec![problem])
     }
 
     /// The picture's linear colours, averaged over the samples of each pixel.
@@ -157,17 +179,17 @@ impl PreparedPass {
         let views = self.eye_views(&shifts, shot.size)?;
         let mut picture = Linear::new(shot.size);
         let views = if self.camera.is_some() { &views[..] } else { &views[..1] };
-        let bytes = 16 * shot.size[0] as usize * shot.size[1] as usize;
+        let bytes = 16 * shot.size[0] as usize * shot.size[1] as usize * Slice::frames_of(self);
         let at_once = (AT_ONCE / bytes.max(1)).max(1);
         for (views, shifts) in views.chunks(at_once).zip(shifts.chunks(at_once)) {
-            let mut slices = vec![(self, self.draw_colors(painter, views, shot.size, 0)?)];
+            let mut slices = vec![Slice::draw(self, painter, views, shot.size)?];
             for slice in &self.farther {
                 let views = slice.eye_views(shifts, shot.size)?;
-                slices.push((slice, slice.draw_colors(painter, &views, shot.size, 0)?));
+                slices.push(Slice::draw(slice, painter, &views, shot.size)?);
             }
             for (index, shift) in shifts.iter().enumerate().take(views.len()) {
-                let seen = |pixel: usize| {
-                    slices.iter().find_map(|(slice, frames)| slice.color(&frames[index], pixel))
+                let seen = |pixel: usize, background: &dyn Fn() -> DVec3| {
+                    seen_color(&slices, index, pixel, background)
                 };
                 picture.add(seen, *shift, &self.background, shot.exposure);
             }
@@ -176,7 +198,7 @@ impl PreparedPass {
     }
 
     /// The colour of a pixel of a frame; `None` where nothing was drawn.
-    fn color(&self, frame: &Frame, pixel: usize) -> Option<[f32; 4]> {
+    pub(super) fn color(&self, frame: &Frame, pixel: usize) -> Option<[f32; 4]> {
         let color = pixel_color(frame.targets.first()?.get(4 * pixel..4 * pixel + 4)?)?;
         Some(if self.encoded { decoded_color(color) } else { color })
     }
@@ -227,7 +249,8 @@ impl PreparedPass {
         let (size, pixel) =
             (shot.size.map(|side| side * fine), pixel.map(|at| at * fine + fine / 2));
         let view = self.eye_view([0.0; 2], size)?;
-        let items = self.items();
+        let blended = self.blended.iter().flat_map(|blended| blended.items());
+        let items: Vec<DrawItem<'_>> = self.items().chain(blended).collect();
         let entry = EntryPoint { module: &stage.validated.module, entry: stage.entry };
         let views = std::slice::from_ref(&view);
         let drawing = self.drawing(&items, views, size, Some((entry, self.targets())));

@@ -201,6 +201,7 @@ impl Sketch {
             encoded: false,
             fine: 1,
             farther: Vec::new(),
+            blended: None,
         })
     }
 }

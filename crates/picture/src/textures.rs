@@ -97,9 +97,18 @@ impl<'a> TextureLibrary<'a> {
             "sky_diffuse" => Some(vec![sky(1.0, DIFFUSE)]),
             "sky_specular" if self.values.lit.needs.levels => Some(self.rough_levels()),
             "sky_specular" => Some(vec![sky(LOBE, SPECULAR)]),
-            "base_map" => Some(color_textures(self.maps().base.clone().levels())),
-            "normal_map" => Some(color_textures(self.maps().normal.clone().levels())),
-            "occlusion_map" => Some(color_textures(self.maps().occlusion.clone().levels())),
+            "base_map" => {
+                let map = self.maps().base.clone();
+                Some(self.leveled(name, map))
+            }
+            "normal_map" => {
+                let map = self.maps().normal.clone();
+                Some(self.leveled(name, map))
+            }
+            "occlusion_map" => {
+                let map = self.maps().occlusion.clone();
+                Some(self.leveled(name, map))
+            }
             "light_map" => Some(color_textures(vec![self.maps().light.clone()])),
             "profile_map" => {
                 let profile = self.values.lit.needs.profile;
@@ -142,7 +151,14 @@ impl<'a> TextureLibrary<'a> {
             None => brick_materials().remove(name),
         };
         let map = found.unwrap_or_else(|| TextureMap { width: 1, height: 1, texels: vec![blank] });
-        color_textures(map.levels())
+        self.leveled(name, map)
+    }
+
+    /// A texture with its smaller levels, if it has them.
+    fn leveled(&self, name: &str, map: TextureMap) -> Vec<FixtureTexture> {
+        let maps = self.values.scene.own_maps.as_ref();
+        let is_single = maps.is_some_and(|maps| maps.single.contains(name));
+        color_textures(if is_single { vec![map] } else { map.levels() })
     }
 
     fn maps(&mut self) -> &Maps {

@@ -1,7 +1,7 @@
 //! Textures made by formulas, among them the profiles and cookies of lamps.
 
 use glam::{DVec2, DVec3, DVec4};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{PI, TAU};
 
 /// Texels, row by row, linear.
@@ -30,6 +30,8 @@ pub struct Maps {
     /// The textures of `material_maps`, by the names of their bindings. Those that are missing are
     /// blank.
     pub material: BTreeMap<&'static str, TextureMap>,
+    /// Those that have no smaller levels, by the names of their bindings.
+    pub single: BTreeSet<&'static str>,
 }
 
 /// The textures of `material_maps`, and the texel of each that changes nothing.
@@ -121,6 +123,7 @@ pub fn bricks() -> Maps {
             (DVec3::new(1.0, 0.92, 0.8) * (0.1 + 0.9 * glow)).extend(1.0)
         }),
         material: BTreeMap::new(),
+        single: BTreeSet::new(),
     }
 }
 

@@ -60,8 +60,10 @@ pub struct Object {
     pub world_from_object: DMat4,
     /// Multiplied with the colours of the corners.
     pub color: DVec3,
-    /// Multiplied with the alpha of its texture, for `alpha_test`: less than one half is not drawn.
+    /// Multiplied with the alpha of its texture: less than one half is not drawn with `alpha_test`.
     pub alpha: f64,
+    /// Whether it is blended by that alpha over what is behind it.
+    pub is_blended: bool,
     /// The material for `material=single`.
     pub material: Material,
     /// The index for `material=array`.
@@ -227,6 +229,7 @@ impl Object {
             material: Material::default(),
             material_index: 0,
             alpha: 1.0,
+            is_blended: false,
             single_sided: false,
             casts: true,
         }
@@ -235,6 +238,24 @@ impl Object {
     /// An object with a material of its own. Its index in the array is 0.
     pub fn made(shape: Shape, place: DMat4, color: DVec3, material: Material) -> Self {
         Self::new(shape, place, color).of(material, 0)
+    }
+
+    /// The object as two: the triangles that turn their backs to a viewer, and those that turn their fronts.
+    pub fn sides_from(&self, eye: DVec3) -> [Self; 2] {
+        let fronts = Self { single_sided: true, ..self.clone() };
+        let front = fronts.seen_from(eye);
+        let all = fronts.shape.indices.chunks_exact(3);
+        let mut rest = front.chunks_exact(3).peekable();
+        // The fronts are in the order of all.
+        let backs = all.filter(|own| rest.next_if(|next| next == own).is_none());
+        let back: Vec<u32> = match self.single_sided {
+            true => Vec::new(),
+            false => backs.flatten().copied().collect(),
+        };
+        [back, front].map(|indices| {
+            let shape = Shape { indices, ..self.shape.clone() };
+            Self { shape, single_sided: false, ..self.clone() }
+        })
     }
 
     /// The indices of the triangles that are drawn for a viewer at a point: all of them, or those

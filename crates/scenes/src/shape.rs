@@ -15,6 +15,8 @@ pub struct Vertex {
     pub normal: DVec3,
     /// Linear, multiplied with the colour of the object.
     pub color: DVec3,
+    /// Multiplied with the alpha of the object.
+    pub alpha: f64,
     /// Coordinates of textures that repeat.
     pub uv: DVec2,
     /// Coordinates in the lightmap, [0, 1].
@@ -200,6 +202,7 @@ fn surface_vertex(at: &impl Fn(f64, f64) -> DVec3, u: f64, v: f64) -> Vertex {
         position: at(u, v),
         normal: along.cross(up).normalize_or_zero(),
         color: DVec3::ONE,
+        alpha: 1.0,
         uv: DVec2::new(u, v),
         light_uv: DVec2::new(u, v),
         tangent: along.normalize_or_zero().extend(1.0),

@@ -120,6 +120,11 @@ pub fn model_scene(model: Model, plan: &Plan) -> Result<Scene, Failure> {
     if let Some(note) = note {
         writeln!(terminal::stderr(), "note: {note}")?;
     }
+    let is_forward = plan.last().is_some_and(|pass| pass.program == "forward");
+    if !is_forward && scene.objects.iter().any(|object| object.is_blended) {
+        let note = "surfaces that are blended by alpha are drawn as if they were opaque";
+        writeln!(terminal::stderr(), "note: {note}")?;
+    }
     Ok(scene)
 }
 

@@ -62,28 +62,31 @@ fn hidden() -> Result<(), Failed> {
     })
 }
 
-/// An orthographic camera before a perspective one does not change its number, which is 1.
+/// Cameras have their numbers of the document. An orthographic one sees two units to each side, whatever its
+/// distance: the square is the middle half of the picture.
 fn camera_by_its_number() -> Result<(), Failed> {
     let (mut document, buffer) = unlit();
     document["cameras"] = json!([
         { "type": "orthographic",
-          "orthographic": { "xmag": 1.0, "ymag": 1.0, "znear": 0.1, "zfar": 10.0 } },
+          "orthographic": { "xmag": 2.0, "ymag": 2.0, "znear": 0.1, "zfar": 10.0 } },
         { "type": "perspective", "perspective": { "yfov": 0.7, "znear": 0.1 } },
     ]);
     document["nodes"] = json!([
-        { "mesh": 0 }, { "camera": 0 }, { "camera": 1, "translation": [0.0, 0.0, 2.0] },
+        { "mesh": 0 }, { "camera": 0, "translation": [0.0, 0.0, 7.0] }, { "camera": 1, "translation": [0.0, 0.0, 2.0] },
     ]);
     document["scenes"] = json!([{ "nodes": [0, 1, 2] }]);
     let file = glb(&document, &buffer);
-    let (picture, stderr) = drawn(&file, &["--camera", "1"])?;
+    let (picture, _) = drawn(&file, &["--camera", "1"])?;
     let corner = pixel(&picture, 0.1, 0.1);
     demand(is_near(corner, [255; 3], 0), || format!("expected the near view, found {corner:?}"))?;
-    demand(stderr.contains("cameras[0]"), || format!("no note of it: {stderr}"))?;
-    let refused = drawn(&file, &["--camera", "0"]);
+    let (picture, _) = drawn(&file, &["--camera", "0"])?;
+    for (at, is_there) in [(0.22, false), (0.28, true), (0.72, true), (0.78, false)] {
+        let found = pixel(&picture, at, 0.5);
+        demand((found == [255; 3]) == is_there, || format!("at {at}: {found:?}"))?;
+    }
+    let refused = drawn(&file, &["--camera", "2"]);
     let told = refused.err().map(|error| format!("{error:?}")).unwrap_or_default();
-    demand(told.contains("no perspective camera 0 in its scene, only 1"), || {
-        format!("found {told}")
-    })
+    demand(told.contains("no camera 2 in its scene, only 0, 1"), || format!("found {told}"))
 }
 
 /// glTF 2.0, 3.10.2: a picture of another form shows all that the camera does. The camera sees two units to

@@ -170,8 +170,7 @@ pub fn prepare_own(
     let first = objects.first().map_or_else(|| around.clone(), |object| around.of_object(object));
     let (rows, notes) = bound.rows(&first);
     let rows = input_rows(stages).into_iter().chain(rows).collect();
-    let is_upside_down = stages.is_for_opengl();
-    let is_flat = !matches!(ground, Ground::Model);
+    let (is_flat, is_upside_down) = (!matches!(ground, Ground::Model), stages.is_for_opengl());
     let (eye, background) = viewer(stages, scene, shot);
     let pass = PreparedPass {
         stages: Stages { vertex, fragment: Some(stages.fragment.ready.clone()) },
@@ -187,6 +186,7 @@ pub fn prepare_own(
         encoded: !request.linear,
         fine: 1,
         farther: Vec::new(),
+        blended: None,
     };
     Ok(OwnPicture { pass, rows, notes, is_flat, is_upside_down })
 }

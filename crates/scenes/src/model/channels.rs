@@ -3,7 +3,8 @@
 //! scales it.
 
 use crate::model::GltfReader;
-use crate::model::surface::is_masked;
+use crate::model::base::Base;
+use crate::model::surface::{is_blended, is_masked};
 use glam::{DAffine2, DMat2, DVec2, DVec4};
 use gltf::texture::{MagFilter, WrappingMode};
 use serde_json::Value;
@@ -25,6 +26,8 @@ pub struct ImageChannels {
     pub is_blocky: bool,
     /// The bits of the strength of the image, an `f32`; see [`ImageChannels::scaled`].
     strength: u32,
+    /// Whether the channels have the roughness of the image's alpha, which is glossiness.
+    is_gloss: bool,
 }
 
 /// What an image shows beyond one of its edges.
@@ -91,6 +94,13 @@ const FIELDS: [TextureField; 9] = [
     ("KHR_materials_sheen", "sheenRoughnessTexture", "sheen_map", &[3], false),
 ];
 
+/// The number of a texture's image: the one of EXT_texture_webp, if there is one.
+pub fn image_of(texture: &gltf::Texture<'_>) -> Option<usize> {
+    let own = texture.extension_value("EXT_texture_webp").and_then(|own| own.get("source"));
+    let own = own.and_then(Value::as_u64).and_then(|index| usize::try_from(index).ok());
+    own.or_else(|| texture.source().map(|image| image.index()))
+}
+
 /// Whether a field of an extension is a texture that is drawn.
 pub fn is_drawn(extension: &str, field: &str) -> bool {
     FIELDS.iter().any(|known| (known.0, known.1) == (extension, field))
@@ -107,13 +117,14 @@ impl ImageChannels {
         let sampler = texture.sampler();
         Some(Self {
             map,
-            image: texture.source()?.index(),
+            image: image_of(texture)?,
             channels,
             is_color,
             coordinates: Coordinates::default(),
             wraps: [sampler.wrap_s(), sampler.wrap_t()].map(Wrap::of),
             is_blocky: sampler.mag_filter() == Some(MagFilter::Nearest),
             strength: 1_f32.to_bits(),
+            is_gloss: false,
         })
     }
 
@@ -129,6 +140,9 @@ impl ImageChannels {
     /// map leans by a factor more, and is shortened if it does not fit into a texel.
     pub fn scaled(&self, texel: DVec4) -> DVec4 {
         let strength = f64::from(f32::from_bits(self.strength));
+        if self.is_gloss {
+            return DVec4::splat((1.0 - strength * texel.w).clamp(0.0, 1.0));
+        }
         if self.map != "normal_map" {
             return DVec4::ONE.lerp(texel, strength.clamp(0.0, 1.0));
         }
@@ -165,6 +179,7 @@ pub fn material_parts(
     for (info, map, channels, is_color) in factor_textures(material) {
         parts.extend(known_part(&info, map, channels, is_color));
     }
+    parts.extend(gloss_parts(material));
     if let Some(info) = material.occlusion_texture() {
         let own = info.extension_value(TRANSFORM);
         let at = Coordinates::read(info.tex_coord(), own, &place("occlusionTexture"))?;
@@ -190,14 +205,14 @@ fn known_part(
 
 /// The parts of the texture of a material's base colour.
 fn color_parts(reader: &GltfReader<'_>, material: &gltf::Material<'_>) -> Vec<ImageChannels> {
-    let info = material.pbr_metallic_roughness().base_color_texture();
+    let info = Base::of(material).color_texture;
     let part = |map, channels: &'static [usize]| {
         info.as_ref().and_then(|info| known_part(info, map, channels, true))
     };
     // An unlit surface beside lit ones emits its colour.
     let is_emitted = material.unlit() && !reader.all_unlit;
-    // The alpha of materials that are not masked counts for nothing.
-    let parts = match (is_emitted, is_masked(material)) {
+    // The alpha of opaque materials counts for nothing.
+    let parts = match (is_emitted, is_masked(material) || is_blended(material)) {
         (false, false) => [part("base_map", RGB), None],
         (false, true) => [part("base_map", RGBA), None],
         (true, false) => [part("emission_map", RGB), None],
@@ -206,18 +221,30 @@ fn color_parts(reader: &GltfReader<'_>, material: &gltf::Material<'_>) -> Vec<Im
     parts.into_iter().flatten().collect()
 }
 
+/// The parts of the texture of specular-glossiness: what is reflected, and the roughness.
+fn gloss_parts(material: &gltf::Material<'_>) -> Vec<ImageChannels> {
+    let Some(gloss) = Base::of(material).gloss else { return Vec::new() };
+    let Some(info) = gloss.texture else { return Vec::new() };
+    let rough = known_part(&info, "metallic_roughness_map", &[1], false);
+    let rough = rough.map(|part| part.with_strength(gloss.factor as f32));
+    let rough = rough.map(|part| ImageChannels { is_gloss: true, ..part });
+    known_part(&info, "specular_map", RGB, true).into_iter().chain(rough).collect()
+}
+
 /// A texture of a factor, the name of the binding, the channels, and whether it is a colour.
 type FactorTexture<'d> = (gltf::texture::Info<'d>, &'static str, &'static [usize], bool);
 
 /// The textures that multiply factors, of those that the parser knows.
 fn factor_textures<'d>(material: &gltf::Material<'d>) -> Vec<FactorTexture<'d>> {
-    let own = material.pbr_metallic_roughness();
+    let own = Base::of(material);
     let (specular, volume) = (material.specular(), material.volume());
     let transmission = material.transmission().and_then(|own| own.transmission_texture());
+    // The factors of both would be multiplied, and the extension excludes the other.
+    let specular = specular.filter(|_| own.gloss.is_none());
     let weight = specular.as_ref().and_then(|own| own.specular_texture());
     let tint = specular.as_ref().and_then(|own| own.specular_color_texture());
     let found: [(_, _, &'static [usize], _); 6] = [
-        (own.metallic_roughness_texture(), "metallic_roughness_map", &[1, 2], false),
+        (own.surface_texture, "metallic_roughness_map", &[1, 2], false),
         (material.emissive_texture(), "emission_map", RGB, true),
         (weight, "specular_map", &[3], false),
         (tint, "specular_map", RGB, true),

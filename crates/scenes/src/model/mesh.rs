@@ -4,11 +4,13 @@ use crate::model::GltfReader;
 use crate::model::channels::Coordinates;
 use crate::model::deform::{Skinning, Skins, morph};
 use crate::model::nodes::PlacedMesh;
-use crate::model::surface::{Means, read_surface, tested_alpha};
+use crate::model::surface::{self, Means, drawn_alpha, read_surface};
+use crate::model::tangents::set_tangents;
 use crate::model::texture::Sheet;
 use crate::sets::Object;
 use crate::shape::{Shape, Vertex};
 use glam::{DMat4, DVec2, DVec3, DVec4};
+use gltf::accessor::Dimensions;
 use gltf::mesh::Mode;
 use lamplight_files::limits::MODEL_CORNERS;
 
@@ -51,8 +53,11 @@ pub fn mesh_objects(
         }
         let object = Object::made(shape, DMat4::IDENTITY, color, material);
         let single_sided = !primitive.material().double_sided();
-        let alpha = tested_alpha(&primitive.material());
-        objects.push((Object { alpha, single_sided, ..object }, means));
+        let alpha = drawn_alpha(&primitive.material());
+        let is_blended = surface::is_blended(&primitive.material());
+        // What can be seen through has no shadow, since that would be one of the whole face.
+        let casts = !is_blended;
+        objects.push((Object { alpha, single_sided, is_blended, casts, ..object }, means));
     }
     Ok(objects)
 }
@@ -74,7 +79,7 @@ fn mirror_winding(mut shape: Shape) -> Shape {
 }
 
 /// The indices of triangles, three for each; `None` for points and lines.
-fn triangle_indices(
+pub fn triangle_indices(
     reader: &mut GltfReader<'_>,
     primitive: &gltf::Primitive<'_>,
     place: &str,
@@ -132,6 +137,20 @@ pub fn mesh_coordinates(
     Ok(rows.iter().map(at).map(|at| if at.is_finite() { at } else { DVec2::ZERO }).collect())
 }
 
+/// The colours of a primitive's vertices, with an alpha of 1 where they have none.
+fn vertex_colors(
+    reader: &GltfReader<'_>,
+    primitive: &gltf::Primitive<'_>,
+    place: &str,
+) -> Result<Option<Vec<[f64; 4]>>, String> {
+    let Some(accessor) = primitive.get(&gltf::Semantic::Colors(0)) else { return Ok(None) };
+    let mut rows = reader.rows(&accessor, &format!("{place}.attributes.COLOR_0"))?;
+    if accessor.dimensions() != Dimensions::Vec4 {
+        rows.iter_mut().for_each(|row| row[3] = 1.0);
+    }
+    Ok(Some(rows))
+}
+
 /// The vertices and triangles of a primitive. Without normals each triangle has that of its face, and
 /// tangents are then ignored (glTF 2.0, 3.7.2.1).
 fn mesh_shape(
@@ -149,7 +168,7 @@ fn mesh_shape(
     let normals = rows(gltf::Semantic::Normals, "NORMAL")?;
     let tangents = rows(gltf::Semantic::Tangents, "TANGENT")?;
     let coordinates = mesh_coordinates(reader, primitive, own, place)?;
-    let colors = rows(gltf::Semantic::Colors(0), "COLOR_0")?;
+    let colors = vertex_colors(reader, primitive, place)?;
     let vector = |row: &[f64; 4]| DVec3::new(row[0], row[1], row[2]);
     let row = |rows: &Option<Vec<[f64; 4]>>, index: usize| {
         rows.as_ref().and_then(|rows| rows.get(index).copied())
@@ -161,6 +180,7 @@ fn mesh_shape(
             position: vector(position),
             normal: normal.unwrap_or(DVec3::Y),
             color: row(&colors, index).map_or(DVec3::ONE, |color| vector(&color)),
+            alpha: row(&colors, index).map_or(1.0, |[_, _, _, alpha]| alpha),
             uv,
             light_uv: uv,
             tangent: row(&tangents, index).map_or(DVec4::ZERO, DVec4::from_array),
@@ -179,37 +199,6 @@ fn mesh_shape(
     if normals.is_none() {
         shape = shape.faceted();
     }
-    if normals.is_none() || tangents.is_none() {
-        set_tangents(&mut shape.vertices, &shape.indices);
-    }
-    Ok(shape)
-}
-
-/// Tangents along u, from the sum over all triangles at a vertex (Lengyel, *Foundations of Game
-/// Engine Development* 2, 7.5). Green in a normal map points up in the image, which is against v in
-/// glTF.
-fn set_tangents(vertices: &mut [Vertex], indices: &[u32]) {
-    let mut sums = vec![(DVec3::ZERO, DVec3::ZERO); vertices.len()];
-    for triangle in indices.chunks_exact(3) {
-        let [a, b, c] = [0, 1, 2].map(|corner| vertices[triangle[corner] as usize]);
-        let (ab, ac) = (b.position - a.position, c.position - a.position);
-        let (s, t) = (b.uv - a.uv, c.uv - a.uv);
-        let area = s.perp_dot(t);
-        if area == 0.0 {
-            continue;
-        }
-        let (along, down) = ((ab * t.y - ac * s.y) / area, (ac * s.x - ab * t.x) / area);
-        for corner in triangle {
-            let (sum_along, sum_down) = &mut sums[*corner as usize];
-            *sum_along += along;
-            *sum_down += down;
-        }
-    }
-    for (vertex, (along, down)) in vertices.iter_mut().zip(sums) {
-        let flat = (along - vertex.normal * vertex.normal.dot(along)).normalize_or_zero();
-        let other = || vertex.normal.try_normalize().unwrap_or(DVec3::Y).any_orthonormal_vector();
-        let tangent = if flat == DVec3::ZERO { other() } else { flat };
-        let is_mirrored = vertex.normal.cross(tangent).dot(down) > 0.0;
-        vertex.tangent = tangent.extend(if is_mirrored { -1.0 } else { 1.0 });
-    }
+    let is_given = normals.is_some() && tangents.is_some();
+    Ok(if is_given { shape } else { set_tangents(shape) })
 }

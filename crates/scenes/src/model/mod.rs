@@ -6,6 +6,8 @@
 //! names its place in the document. All memory is bounded by [`limits`](lamplight_files::limits).
 
 mod accessor;
+mod bake;
+mod base;
 mod channels;
 mod deform;
 mod document;
@@ -13,12 +15,13 @@ mod files;
 mod mesh;
 mod nodes;
 mod surface;
+mod tangents;
 mod texture;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 pub use self::files::Files;
 use self::files::{BufferBytes, buffer_bytes, structure_bytes};
@@ -96,7 +99,9 @@ struct GltfReader<'b> {
     files: &'b Files<'b>,
     notes: BTreeSet<String>,
     /// Means of images, by number and whether they are colours.
-    means: BTreeMap<(usize, bool), DVec3>,
+    means: BTreeMap<(usize, bool), DVec4>,
+    /// Pixels of images, counted each time that one is decoded.
+    decoded: u64,
     /// How many vertices morph targets and joints have moved, counted for each of these.
     moved: usize,
     /// Whether no material that is drawn is lit.
@@ -136,6 +141,7 @@ pub fn read_model_beside(bytes: &[u8], view: View, files: &Files<'_>) -> Result<
             files,
             notes,
             means: BTreeMap::new(),
+            decoded: 0,
             moved: 0,
             all_unlit: false,
         };
@@ -327,9 +333,9 @@ fn model_camera(
     let camera = placed.cameras.iter().find(|camera| camera.index == index);
     let known = || placed.cameras.iter().map(|camera| camera.index.to_string());
     let missing = || match known().next() {
-        None => "it has no perspective camera in its scene".to_owned(),
+        None => "it has no camera in its scene".to_owned(),
         Some(_) => format!(
-            "it has no perspective camera {index} in its scene, only {}",
+            "it has no camera {index} in its scene, only {}",
             known().collect::<Vec<_>>().join(", ")
         ),
     };

@@ -26,10 +26,18 @@ pub struct GltfCamera {
     /// Its number in the document.
     pub index: usize,
     world_from_camera: DMat4,
-    fov_y: f64,
+    extent: Extent,
     /// Width over height of what it shows, if the document says so.
     pub aspect: Option<f64>,
     planes: (f64, Option<f64>),
+}
+
+/// How much a camera shows from bottom to top.
+enum Extent {
+    /// An angle, radians.
+    Angle(f64),
+    /// Half of a length, for an orthographic camera.
+    HalfHeight(f64),
 }
 
 /// A light and its transform to world space.
@@ -137,21 +145,25 @@ fn take_node(
         }
     }
     let camera = node.camera();
-    match camera.as_ref().map(|camera| (camera.index(), camera.projection())) {
-        Some((index, Projection::Perspective(view))) => placed.cameras.push(GltfCamera {
-            index,
-            world_from_camera: world,
-            fov_y: f64::from(view.yfov()),
-            aspect: view.aspect_ratio().map(f64::from),
-            planes: (f64::from(view.znear()), view.zfar().map(f64::from)),
-        }),
-        Some((index, Projection::Orthographic(_))) => {
-            reader.notes.insert(format!("orthographic cameras are ignored: cameras[{index}]"));
-        }
-        None => {}
-    }
+    placed.cameras.extend(camera.map(|camera| placed_camera(&camera, world)));
     placed.lights.extend(node.light().map(|light| placed_light(&light, world)));
     Ok(())
+}
+
+fn placed_camera(camera: &gltf::Camera<'_>, world: DMat4) -> GltfCamera {
+    let (extent, aspect, planes) = match camera.projection() {
+        Projection::Perspective(view) => {
+            let planes = (f64::from(view.znear()), view.zfar().map(f64::from));
+            let angle = f64::from(view.yfov()).clamp(0.02, 3.0);
+            (Extent::Angle(angle), view.aspect_ratio().map(f64::from), planes)
+        }
+        Projection::Orthographic(view) => {
+            let [x, y] = [view.xmag(), view.ymag()].map(|size| f64::from(size).abs().max(1e-9));
+            let planes = (f64::from(view.znear()), Some(f64::from(view.zfar())));
+            (Extent::HalfHeight(y), Some(x / y), planes)
+        }
+    };
+    GltfCamera { index: camera.index(), world_from_camera: world, extent, aspect, planes }
 }
 
 /// Where EXT_mesh_gpu_instancing repeats a node's mesh, in the space of the node: once, without it.
@@ -298,6 +310,10 @@ impl GltfLight {
     }
 }
 
+/// From how far away an orthographic camera sees, as a multiple of what it shows and of the model: a
+/// pixel of 1,000 is then off by one where the lines of sight are not parallel.
+const FAR_OFF: f64 = 1000.0;
+
 impl GltfCamera {
     /// The camera as the viewer of the scene.
     pub fn eye(&self, bounds: &Ball) -> Eye {
@@ -305,12 +321,27 @@ impl GltfCamera {
         let ahead = self.world_from_camera.transform_vector3(DVec3::NEG_Z);
         let ahead = ahead.normalize_or(DVec3::NEG_Z);
         let (near, far) = self.planes;
+        let fov_y = match self.extent {
+            Extent::Angle(angle) => angle,
+            // Seen from far away through a narrow angle, lines of sight are parallel.
+            Extent::HalfHeight(half) => {
+                let back = FAR_OFF * half.max(bounds.radius);
+                let far = far.unwrap_or_default().max(1.001 * near);
+                return Eye {
+                    position: position - ahead * back,
+                    target: position,
+                    fov_y: 2.0 * (half / back).atan(),
+                    near: back + near,
+                    far: back + far,
+                };
+            }
+        };
         let near = if near > 0.0 { near } else { 0.005 * bounds.radius };
         let all = position.distance(bounds.middle) + 2.0 * bounds.radius;
         Eye {
             position,
             target: position + ahead * position.distance(bounds.middle).max(near),
-            fov_y: self.fov_y.clamp(0.02, 3.0),
+            fov_y,
             near,
             far: far.unwrap_or(all).max(1.001 * near),
         }

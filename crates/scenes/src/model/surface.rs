@@ -3,6 +3,7 @@
 
 use crate::layers::Layers;
 use crate::model::GltfReader;
+use crate::model::base::Base;
 use crate::model::channels::is_drawn;
 use crate::model::document::{ignored_extension, is_read};
 use crate::sets::{Material, Object};
@@ -19,8 +20,8 @@ pub fn read_surface(
     reader: &mut GltfReader<'_>,
     material: &gltf::Material<'_>,
 ) -> Result<(DVec3, Material, Means), String> {
-    let own = material.pbr_metallic_roughness();
-    let [red, green, blue, _] = own.base_color_factor().map(f64::from);
+    let own = Base::of(material);
+    let [red, green, blue, _] = own.color;
     let color = DVec3::new(red, green, blue);
     let layers = read_layers(reader, material)?;
     left_out(reader, material);
@@ -32,7 +33,7 @@ pub fn read_surface(
     // Diffuse, specular and shininess are for permutations without glTF's material model. These
     // have no textures of metalness and roughness, so the means are multiplied in here.
     let metal = layers.metallic * means.metal;
-    let factor = f64::from(own.roughness_factor()).clamp(0.0, 1.0);
+    let factor = own.roughness;
     let rough = factor * means.rough;
     let strength = f64::from(material.emissive_strength().unwrap_or(1.0)).max(0.0);
     let emission = DVec3::from_array(material.emissive_factor().map(f64::from)) * strength;
@@ -122,15 +123,19 @@ fn texture_means(
     let mut means = Means::default();
     if material.unlit() {
         // Beside lit surfaces it emits its colour; alone it has a texture of colours.
-        let emitted = material.pbr_metallic_roughness().base_color_texture();
+        let emitted = Base::of(material).color_texture;
         if let Some(info) = emitted.filter(|_| !reader.all_unlit) {
-            means.emission = reader.texture_mean(&info.texture(), true)?;
+            means.emission = reader.texture_mean(&info.texture(), true)?.truncate();
         }
         return Ok(means);
     }
-    if let Some(info) = material.pbr_metallic_roughness().metallic_roughness_texture() {
+    let base = Base::of(material);
+    if let Some(info) = base.surface_texture {
         let mean = reader.texture_mean(&info.texture(), false)?;
         (means.rough, means.metal) = (mean.y, mean.z);
+    }
+    if let Some((gloss, info)) = base.gloss.and_then(|gloss| Some((gloss.factor, gloss.texture?))) {
+        means.rough = 1.0 - gloss * reader.texture_mean(&info.texture(), false)?.w;
     }
     if let Some(occlusion) = material.occlusion_texture() {
         let mean = reader.texture_mean(&occlusion.texture(), false)?;
@@ -139,7 +144,7 @@ fn texture_means(
     }
     // Without a factor nothing is emitted, whatever the texture is.
     if let Some(info) = material.emissive_texture() {
-        means.emission = reader.texture_mean(&info.texture(), true)?;
+        means.emission = reader.texture_mean(&info.texture(), true)?.truncate();
     }
     Ok(means)
 }
@@ -149,7 +154,7 @@ fn left_out(reader: &mut GltfReader<'_>, material: &gltf::Material<'_>) {
     let note = match material.alpha_mode() {
         AlphaMode::Opaque => return,
         AlphaMode::Mask => "shadows are those of whole faces, without what their alpha leaves out",
-        AlphaMode::Blend => "ignored, since no program supports it: transparency by alpha",
+        AlphaMode::Blend => "surfaces that are blended by alpha have no shadows",
     };
     reader.notes.insert(note.to_owned());
 }
@@ -159,15 +164,23 @@ pub fn is_masked(material: &gltf::Material<'_>) -> bool {
     material.alpha_mode() == AlphaMode::Mask
 }
 
-/// The alpha of an object, such that a product with its texture below one half is what the material
-/// leaves out (glTF 2.0, 3.9.4). Everything else is opaque.
-pub fn tested_alpha(material: &gltf::Material<'_>) -> f64 {
+/// Whether a material is blended over what is behind it.
+pub fn is_blended(material: &gltf::Material<'_>) -> bool {
+    material.alpha_mode() == AlphaMode::Blend
+}
+
+/// The alpha of an object: that of a material that is blended, and for one that is masked such that a
+/// product with its texture below one half is what the material leaves out (glTF 2.0, 3.9.4). Everything
+/// else is opaque.
+pub fn drawn_alpha(material: &gltf::Material<'_>) -> f64 {
+    if is_blended(material) {
+        return Base::of(material).color[3].clamp(0.0, 1.0);
+    }
     let cutoff = f64::from(material.alpha_cutoff().unwrap_or(0.5));
     if !is_masked(material) || cutoff <= 0.0 {
         return 1.0;
     }
-    let [_, _, _, alpha] = material.pbr_metallic_roughness().base_color_factor();
-    f64::from(alpha) * 0.5 / cutoff
+    Base::of(material).color[3] * 0.5 / cutoff
 }
 
 /// Axes of `forward`, and whether a material needs them.
@@ -254,9 +267,11 @@ fn read_layers(
 /// The factors that the parser gives.
 fn parsed_layers(material: &gltf::Material<'_>, place: &str) -> Result<Layers, String> {
     let at = |name: &str| format!("{place}.extensions.{name}");
-    let own = material.pbr_metallic_roughness();
-    let mut layers =
-        Layers { metallic: f64::from(own.metallic_factor()).clamp(0.0, 1.0), ..Layers::default() };
+    let own = Base::of(material);
+    let mut layers = Layers { metallic: own.metallic, ..Layers::default() };
+    if let Some(gloss) = own.gloss {
+        return Ok(Layers { ior: 0.0, specular_color: gloss.specular, ..layers });
+    }
     if let Some(ior) = material.ior() {
         // 0 stands for full reflection. Any other value must be at least 1.
         let least = if ior == 0.0 { 0.0 } else { 1.0 };

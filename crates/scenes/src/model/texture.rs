@@ -10,14 +10,15 @@ use gltf::image::Source;
 use image::{DynamicImage, ImageDecoder as _, ImageError};
 
 use super::GltfReader;
+use super::bake::{triangles_of, unwrapped};
 use super::files::uri_bytes;
 use super::mesh::{has_triangles, mesh_coordinates};
 use super::nodes::PlacedNodes;
 use crate::maps::blank_texel;
-use crate::model::channels::{Coordinates, ImageChannels, Window, Wrap, material_parts};
+use crate::model::channels::{Coordinates, ImageChannels, Window, Wrap, image_of, material_parts};
 use crate::sets::{Maps, TextureMap};
 use crate::shape::Shape;
-use lamplight_files::limits::{MODEL_CORNERS, MODEL_PIXELS, MODEL_TEXTURES};
+use lamplight_files::limits::{MODEL_ALL_PIXELS, MODEL_CORNERS, MODEL_PIXELS, MODEL_TEXTURES};
 
 /// All textures of a model: each set of them, as a material has it, is in a cell.
 #[derive(Default)]
@@ -28,6 +29,9 @@ pub struct Sheet {
     cells: BTreeMap<Vec<ImageChannels>, Cell>,
 }
 
+/// The part of a cell on each side that is beyond its window: a texel of the smallest cells.
+const FRAME: f64 = 1.0 / 64.0;
+
 /// The place of a set of textures on the sheet.
 #[derive(Debug, Clone, Copy)]
 struct Cell {
@@ -37,6 +41,9 @@ struct Cell {
     own: Coordinates,
     is_shared: bool,
     window: Window,
+    /// Whether it shows a little more than the window on each side, so that filters do not reach into the
+    /// next cell. A single set that repeats is repeated by the sampler.
+    is_framed: bool,
 }
 
 impl Cell {
@@ -47,14 +54,23 @@ impl Cell {
         let first = parts.first().map_or_else(Coordinates::default, |part| part.coordinates);
         let is_shared = parts.iter().all(|part| part.coordinates == first);
         let own = if is_shared { first } else { Coordinates::of_set(first.set) };
-        Self { index, own, is_shared, window: Window::UNIT }
+        Self { index, own, is_shared, window: Window::UNIT, is_framed: true }
     }
 
     /// The coordinates in a texture of a position in the cell, in [0, 1]. Those in [0, 1] are in the
     /// image.
     fn in_texture(&self, part: &ImageChannels, share: DVec2) -> DVec2 {
+        let share = if self.is_framed { (share - FRAME) / (1.0 - 2.0 * FRAME) } else { share };
         let at = self.window.at(share);
         if self.is_shared { at } else { part.coordinates.texture_from_set().transform_point2(at) }
+    }
+
+    /// Where in the cell coordinates of its own set are, in [0, 1].
+    fn place(&self, uv: DVec2) -> DVec2 {
+        if !self.is_framed {
+            return (uv - self.window.low) / self.window.size;
+        }
+        FRAME + (1.0 - 2.0 * FRAME) * self.window.share(uv)
     }
 
     /// Whether the sampler can repeat the cell as its only texture.
@@ -74,30 +90,125 @@ pub fn texture_sheet(reader: &mut GltfReader<'_>, placed: &PlacedNodes) -> Resul
         return Err(format!("materials: more than {MODEL_TEXTURES} sets of textures"));
     }
     let across = cells_across(cells.len());
+    if across > COARSE {
+        let (count, side) = (cells.len(), 2048 / across);
+        let note = format!("{count} sets of textures share one sheet: {side} x {side} pixels each");
+        reader.notes.insert(note);
+    }
+    let sizes = map_sizes(reader, &cells)?;
     let mut maps = BTreeMap::new();
     for (parts, cell) in &cells {
         for part in parts {
-            let side = (sheet_side(part.map) / across).min(1024);
-            let map = maps.entry(part.map);
-            let map = map.or_insert_with(|| blank_map(across * side, blank_of(part.map)));
+            let [width, height] = sizes.get(part.map).map_or([1; 2], |cell| cell.size);
+            let map = maps.entry(part.map).or_insert_with(|| {
+                blank_map([across * width, across * height], blank_of(part.map))
+            });
             let Some(image) = reader.image(part.image, part.is_color)? else { continue };
-            let at = [cell.index % across * side, cell.index / across * side];
+            let at = [cell.index % across * width, cell.index / across * height];
+            let place = (at, [width, height]);
             if part.coordinates.set == cell.own.set {
-                place_image(map, part, &image, (at, side), |share| cell.in_texture(part, share));
+                place_image(map, part, &image, place, |share| cell.in_texture(part, share));
             } else {
-                let what = "textures with other coordinates than the first one of their material \
-                    count with their mean";
-                reader.notes.insert(what.to_owned());
-                let mean = blank_map(1, image.mean());
-                place_image(map, part, &mean, (at, side), |_| DVec2::ZERO);
+                let found = other_set(reader, placed, (parts, cell), part, [width, height])?;
+                place_other(map, part, &image, place, found);
             }
         }
     }
-    let mut taken = |name: &str| maps.remove(name).unwrap_or_else(|| blank_map(1, blank_of(name)));
+    let mut taken =
+        |name: &str| maps.remove(name).unwrap_or_else(|| blank_map([1; 2], blank_of(name)));
     let (base, normal) = (taken("base_map"), taken("normal_map"));
     let (occlusion, light) = (taken("occlusion_map"), taken("light_map"));
-    let maps = Some(Maps { base, normal, occlusion, light, material: maps });
+    // A picture that has fewer pixels than an enlarged image reads between its pixels, and not their mean.
+    let single = sizes.iter().filter(|(_, cell)| !cell.is_fine).map(|(name, _)| *name).collect();
+    let maps = Some(Maps { base, normal, occlusion, light, material: maps, single });
     Ok(Sheet { maps, names, cells })
+}
+
+/// Where each pixel of a cell is in the set of coordinates of one of its textures, which is not the first
+/// set of the material. If that is nowhere, a note says so: the texture counts with its mean.
+fn other_set(
+    reader: &mut GltfReader<'_>,
+    placed: &PlacedNodes,
+    (parts, cell): (&[ImageChannels], &Cell),
+    part: &ImageChannels,
+    size: [usize; 2],
+) -> Result<Option<Vec<Option<DVec2>>>, String> {
+    let pixels = DVec2::new(size[0] as f64, size[1] as f64);
+    let mut triangles = triangles_of(reader, placed, parts, [cell.own, part.coordinates])?;
+    for [first, _] in triangles.iter_mut().flatten() {
+        *first = cell.place(*first) * pixels - 0.5;
+    }
+    // A bent normal has its directions from the first set.
+    let found = if part.map == "normal_map" { None } else { unwrapped(&triangles, size) };
+    if found.is_none() {
+        let what = "textures with other coordinates than the first one of their material count with \
+            their mean, where triangles share places of the first one";
+        reader.notes.insert(what.to_owned());
+    }
+    Ok(found)
+}
+
+/// Writes the channels of an image into a cell by the coordinates of each pixel, and the image's mean
+/// where there are none.
+fn place_other(
+    map: &mut TextureMap,
+    part: &ImageChannels,
+    image: &TextureMap,
+    (at, size): ([usize; 2], [usize; 2]),
+    found: Option<Vec<Option<DVec2>>>,
+) {
+    place_image(map, part, &blank_map([1; 2], image.mean()), (at, size), |_| DVec2::ZERO);
+    let pixels = DVec2::new(image.width as f64, image.height as f64);
+    for (index, uv) in found.into_iter().flatten().enumerate() {
+        let Some(uv) = uv else { continue };
+        let place = uv * pixels;
+        let own =
+            if part.is_blocky { pixel_at(image, part, place) } else { between(image, part, place) };
+        let own = part.scaled(own);
+        let (x, y) = (at[0] + index % size[0], at[1] + index / size[0]);
+        for channel in part.channels {
+            map.texels[y * map.width + x][*channel] = own[*channel];
+        }
+    }
+}
+
+/// The pixels of a cell of a texture.
+#[derive(Clone, Copy, Default)]
+struct CellSize {
+    size: [usize; 2],
+    /// Whether some image has not many more pixels there than in its file.
+    is_fine: bool,
+}
+
+/// The pixels of a cell of each texture. Images that the sampler can show as they are keep their size. Others
+/// are drawn much larger into their cells, so that what is between their pixels is there too.
+fn map_sizes(
+    reader: &GltfReader<'_>,
+    cells: &BTreeMap<Vec<ImageChannels>, Cell>,
+) -> Result<BTreeMap<&'static str, CellSize>, String> {
+    const LARGER: f64 = 64.0;
+    const LEAST: usize = 64;
+    let across = cells_across(cells.len());
+    let mut sizes = BTreeMap::new();
+    for (parts, cell) in cells {
+        let is_smooth = parts.iter().all(|part| !part.is_blocky);
+        let is_shown = is_smooth && cell.is_shared && !cell.is_framed;
+        for part in parts {
+            let most = (sheet_side(part.map) / across).clamp(1, LARGEST);
+            let [width, height] = image_size(reader, part.image)?;
+            let pixels = DVec2::new(width as f64, height as f64) * cell.window.size;
+            // What is drawn triangle by triangle has another size on each.
+            let is_other = part.coordinates.set != cell.own.set;
+            let wanted = (LARGER * pixels.max_element()) as usize;
+            let least = if is_other { most } else { LEAST };
+            let side = wanted.next_power_of_two().max(least).min(most);
+            let own = if is_shown { [width.min(most), height.min(most)] } else { [side; 2] };
+            let found: &mut CellSize = sizes.entry(part.map).or_default();
+            found.size = [found.size[0].max(own[0]), found.size[1].max(own[1])];
+            found.is_fine |= is_shown || 8 * side < wanted;
+        }
+    }
+    Ok(sizes)
 }
 
 /// A cell for each set of textures. A single set that repeats is repeated by the sampler. Otherwise
@@ -132,7 +243,8 @@ fn texture_cells(
     }
     let is_alone = cells.len() == 1;
     for (parts, cell) in &mut cells {
-        if is_alone && cell.is_shared && Cell::is_repeated(parts) {
+        cell.is_framed = !is_alone || !Cell::is_repeated(parts);
+        if !cell.is_framed && cell.is_shared {
             continue;
         }
         if let Some((low, high)) = bounds.get(&cell.index) {
@@ -141,6 +253,12 @@ fn texture_cells(
     }
     Ok(cells)
 }
+
+/// The most pixels along an edge that are read of an image.
+const LARGEST: usize = 1024;
+
+/// With more cells in a row, images are drawn much smaller than they are.
+const COARSE: usize = 8;
 
 /// Texels along an edge of a sheet. A model may need ten sheets.
 fn sheet_side(map: &str) -> usize {
@@ -174,15 +292,12 @@ impl Sheet {
         let across = cells_across(self.cells.len());
         let parts = material_parts(reader, material)?;
         let Some(cell) = self.cells.get(&parts) else { return Ok(shape) };
-        if across == 1 && Cell::is_repeated(&parts) {
-            // The window of a single cell is repeated by the sampler.
-            let window = cell.window;
-            return Ok(shape.map(|vertex| vertex.uv = (vertex.uv - window.low) / window.size));
+        // The window of a single cell is repeated by the sampler.
+        if !cell.is_framed {
+            return Ok(shape.map(|vertex| vertex.uv = cell.place(vertex.uv)));
         }
         let corner = DVec2::new((cell.index % across) as f64, (cell.index / across) as f64);
-        // Off the rim, so that filters do not reach into the next cell.
-        let within = |uv: DVec2| 0.004 + 0.992 * cell.window.share(uv);
-        Ok(shape.map(|vertex| vertex.uv = (corner + within(vertex.uv)) / across as f64))
+        Ok(shape.map(|vertex| vertex.uv = (corner + cell.place(vertex.uv)) / across as f64))
     }
 }
 
@@ -192,17 +307,17 @@ impl GltfReader<'_> {
         &mut self,
         texture: &gltf::Texture<'_>,
         is_color: bool,
-    ) -> Result<DVec3, String> {
+    ) -> Result<DVec4, String> {
         // A texture that cannot be read counts as 1, which changes no factor.
-        let Some(image) = texture.source() else { return Ok(DVec3::ONE) };
-        let key = (image.index(), is_color);
+        let Some(image) = image_of(texture) else { return Ok(DVec4::ONE) };
+        let key = (image, is_color);
         if let Some(mean) = self.means.get(&key) {
             return Ok(*mean);
         }
         if self.means.len() >= MODEL_TEXTURES {
             return Err(format!("materials: more than {MODEL_TEXTURES} sets of textures"));
         }
-        let mean = self.image(key.0, is_color)?.map_or(DVec3::ONE, |map| map.mean().truncate());
+        let mean = self.image(key.0, is_color)?.map_or(DVec4::ONE, |map| map.mean());
         self.means.insert(key, mean);
         Ok(mean)
     }
@@ -225,8 +340,8 @@ fn cells_across(cells: usize) -> usize {
     (1..).find(|side| side * side >= cells).unwrap_or(1)
 }
 
-fn blank_map(side: usize, texel: DVec4) -> TextureMap {
-    TextureMap { width: side, height: side, texels: vec![texel; side * side] }
+fn blank_map([width, height]: [usize; 2], texel: DVec4) -> TextureMap {
+    TextureMap { width, height, texels: vec![texel; width * height] }
 }
 
 /// Writes the channels of an image that count into a cell: between the pixels of the image, unless its
@@ -235,12 +350,13 @@ fn place_image(
     map: &mut TextureMap,
     part: &ImageChannels,
     image: &TextureMap,
-    ([left, top], side): ([usize; 2], usize),
+    ([left, top], [width, height]): ([usize; 2], [usize; 2]),
     in_texture: impl Fn(DVec2) -> DVec2,
 ) {
     let size = DVec2::new(image.width as f64, image.height as f64);
-    for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
-        let at = in_texture((DVec2::new(x as f64, y as f64) + 0.5) / side as f64) * size;
+    let cell = DVec2::new(width as f64, height as f64);
+    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+        let at = in_texture((DVec2::new(x as f64, y as f64) + 0.5) / cell) * size;
         let own = if part.is_blocky { pixel_at(image, part, at) } else { between(image, part, at) };
         let own = part.scaled(own);
         let texel = &mut map.texels[(top + y) * map.width + left + x];
@@ -288,10 +404,15 @@ fn unread_format(bytes: &[u8]) -> Option<&'static str> {
     if bytes.starts_with(b"\xabKTX 20\xbb") {
         return Some("KTX 2, as of KHR_texture_basisu");
     }
-    if bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") {
-        return Some("WebP");
-    }
     bytes.starts_with(b"DDS ").then_some("DDS")
+}
+
+/// Width and height of an image, by its header; 1 if it cannot be read.
+fn image_size(reader: &GltfReader<'_>, index: usize) -> Result<[usize; 2], String> {
+    let bytes = image_bytes(reader, index, &format!("images[{index}]"))?;
+    let file = image::ImageReader::new(Cursor::new(bytes.as_ref())).with_guessed_format();
+    let size = file.ok().and_then(|file| file.into_dimensions().ok()).unwrap_or((1, 1));
+    Ok([size.0 as usize, size.1 as usize])
 }
 
 /// An image of the document, linear, or why it cannot be decoded.
@@ -299,7 +420,7 @@ fn unread_format(bytes: &[u8]) -> Option<&'static str> {
 /// # Errors
 /// Bytes that are not in the file, and an image that is too large.
 fn decode_image(
-    reader: &GltfReader<'_>,
+    reader: &mut GltfReader<'_>,
     index: usize,
     is_color: bool,
 ) -> Result<Result<TextureMap, String>, String> {
@@ -328,12 +449,23 @@ fn decode_image(
     if u64::from(width) * u64::from(height) > MODEL_PIXELS || width == 0 || height == 0 {
         return Err(format!("{place}: {width} x {height} pixels are more than {MODEL_PIXELS}"));
     }
+    reader.decoded += u64::from(width) * u64::from(height);
+    if reader.decoded > MODEL_ALL_PIXELS {
+        return Err(format!("{place}: all images have more than {MODEL_ALL_PIXELS} pixels"));
+    }
     let decoded = match DynamicImage::from_decoder(decoder) {
         Ok(decoded) => decoded,
         Err(error) => return undecoded(error),
     };
-    // No finer than a cell can be.
-    let small = decoded.thumbnail(1024.min(width), 1024.min(height)).to_rgba8();
+    Ok(Ok(linear_map(&decoded, is_color)))
+}
+
+/// The texels of an image, linear, and no finer than a cell can be.
+fn linear_map(decoded: &DynamicImage, is_color: bool) -> TextureMap {
+    let small = match decoded.width().max(decoded.height()) > LARGEST as u32 {
+        true => decoded.thumbnail(LARGEST as u32, LARGEST as u32).to_rgba8(),
+        false => decoded.to_rgba8(),
+    };
     let linear = |byte: u8| {
         let share = f64::from(byte) / 255.0;
         if is_color { crate::linear_from_srgb(share) } else { share }
@@ -342,9 +474,9 @@ fn decode_image(
         let [red, green, blue, alpha] = pixel.0;
         DVec3::from_array([red, green, blue].map(linear)).extend(f64::from(alpha) / 255.0)
     };
-    Ok(Ok(TextureMap {
+    TextureMap {
         width: small.width() as usize,
         height: small.height() as usize,
         texels: small.pixels().map(texel).collect(),
-    }))
+    }
 }

@@ -73,5 +73,6 @@ fn land_textures() -> Maps {
         occlusion: blank(DVec4::ONE),
         light: blank(DVec4::ONE),
         material: std::collections::BTreeMap::new(),
+        single: std::collections::BTreeSet::new(),
     }
 }

@@ -1,0 +1,208 @@
+//! `forward` draws models as glTF says. Each row is a property of the specification or of an extension: a
+//! model that the test makes is drawn by the library and by a renderer in f64 that is written from the text
+//! (`tests/gltf/`) and shares no code with it. Linear radiances are compared. `docs/guide/gltf.md` has the
+//! rows with what was measured.
+
+mod brdf;
+mod model;
+mod page;
+mod reference;
+mod rows;
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use lamplight::bundle::Language;
+use lamplight::execute::Session;
+use lamplight::model::{Lacks, View, read_model};
+use lamplight::picture::{Linear, Plan, prepare_passes};
+use libtest_mimic::{Failed, Trial};
+
+use crate::render::{library, on_device, rendered, shot};
+use model::Model;
+use reference::{Scene, Seen};
+use rows::{Expected, Row};
+
+/// The executors, and the language in which each is given the shaders.
+const EXECUTORS: [(&str, Language); 3] =
+    [("eval", Language::Wesl), ("vulkan", Language::Wesl), ("gl", Language::Glsl)];
+/// Pixels along an edge.
+const SIZE: usize = 48;
+/// A pixel agrees if each channel is this close, as a share of the channel or of white.
+const CLOSE: f64 = 0.01;
+/// The least share of pixels that agree.
+const LEAST: f64 = 0.995;
+/// The largest share of pixels that are left out, since another triangle is beside them.
+const OPEN: f64 = 0.05;
+
+pub fn tests() -> Vec<Trial> {
+    let each = rows::all().into_iter().flat_map(|row| {
+        EXECUTORS.map(move |(executor, language)| {
+            let row = row.clone();
+            Trial::test(format!("gltf/{}/{executor}", row.name), move || {
+                on_device(executor, |painter| compared(&row, painter, language))
+            })
+        })
+    });
+    each.chain([Trial::test("gltf/page", page::is_current)]).collect()
+}
+
+/// How well a picture agrees with the reference.
+#[derive(Debug, Clone, Copy)]
+struct Agreement {
+    /// The share of the pixels that are compared and agree.
+    agree: f64,
+    /// The share of the pixels that are left out.
+    open: f64,
+    /// The largest difference, as a share of the channel or of white.
+    worst: f64,
+    /// The difference that half of the pixels do not have.
+    median: f64,
+}
+
+impl Agreement {
+    fn percent(self) -> String {
+        format!("{:.1}", (1000.0 * self.agree).floor() / 10.0)
+    }
+
+    /// What the page says of a row.
+    fn figure(self, expected: Expected) -> String {
+        match expected {
+            Expected::Agrees => self.percent(),
+            Expected::Differs { .. } => {
+                format!("{}; half are off by more than {:.1}", self.percent(), 100.0 * self.median)
+            }
+        }
+    }
+}
+
+/// Draws a row with an executor and compares it with the reference.
+fn measured(row: &Row, painter: &dyn Session, language: Language) -> Result<Agreement, String> {
+    let model = (row.make)();
+    let found = picture(&model, row.axes, painter, language)?;
+    let wanted = reference(row, &model);
+    Ok(agreement(&found, &wanted))
+}
+
+/// What the reference draws of a row, once for all executors.
+fn reference(row: &Row, model: &Model) -> Arc<Vec<Seen>> {
+    static DRAWN: Mutex<BTreeMap<&str, Arc<OnceLock<Arc<Vec<Seen>>>>>> =
+        Mutex::new(BTreeMap::new());
+    let mut drawn = DRAWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let own = drawn.entry(row.name).or_default().clone();
+    drop(drawn);
+    own.get_or_init(|| Arc::new(Scene::new(model, row.choices).draw(SIZE))).clone()
+}
+
+fn compared(row: &Row, painter: &dyn Session, language: Language) -> Result<(), String> {
+    let found = measured(row, painter, language)?;
+    println!("{}: {found:?}", row.name);
+    if found.open > OPEN {
+        return Err(format!("{} of the pixels are left out", found.open));
+    }
+    let least = match row.expected {
+        Expected::Agrees => LEAST,
+        // On the page is what eval measures. Devices round otherwise.
+        Expected::Differs { .. } => page::listed(row)? - 0.02,
+    };
+    match found.agree >= least {
+        true => Ok(()),
+        false => Err(format!(
+            "{} % of the pixels agree, the largest difference is {:.4}",
+            found.percent(),
+            found.worst
+        )),
+    }
+}
+
+/// The picture of a model by the program and the axes that it asks for, without surroundings and shadows.
+fn picture(
+    model: &Model,
+    axes: &[&str],
+    painter: &dyn Session,
+    language: Language,
+) -> Result<Linear, String> {
+    let mut read = read_model(&model.glb(), View::Own)?;
+    read.fit(1.0);
+    let asked: Vec<String> = read.axes.iter().chain(&read.layers).cloned().collect();
+    let is_replaced = |value: &&String| {
+        let axis = value.split('=').next().unwrap_or_default();
+        axis.starts_with("shadow")
+            || axis == "ambient"
+            || axis == "occlusion"
+            || axes.iter().any(|own| own.split('=').next() == Some(axis))
+    };
+    let kept = asked.iter().filter(|value| !is_replaced(value)).map(String::as_str);
+    let all: Vec<&str> = kept.chain(["shadow=none"]).chain(axes.iter().copied()).collect();
+    let has = |axis: &str| all.iter().any(|value| value.starts_with(axis));
+    let ambient = if has("ambient=") { "" } else { ",ambient=none" };
+    let values = all.iter().map(|value| match value.strip_suffix("=true") {
+        Some(axis) => axis.to_owned(),
+        None => (*value).to_owned(),
+    });
+    let values = values.filter(|value| !value.ends_with("=false"));
+    let key = values.collect::<Vec<String>>().join(",") + ambient;
+    let mut plan = Plan::of_key(&library().programs, "forward", &key).map_err(rendered)?;
+    let (scene, _) = read.scene_of(Lacks { maps: !has("material_maps"), occlusion: true });
+    plan.model = Some(Arc::new(scene));
+    let shot = shot([SIZE as u32; 2], 1, language);
+    let prepared = prepare_passes(painter, &library().programs, &plan, &shot).map_err(rendered)?;
+    prepared.photograph(painter, &shot).map_err(rendered)
+}
+
+/// Compares all pixels, apart from those with another triangle beside them.
+fn agreement(found: &Linear, wanted: &[Seen]) -> Agreement {
+    let at = |x: usize, y: usize| &wanted[y * SIZE + x];
+    let is_open = |x: usize, y: usize| {
+        let near = |place: usize| place.saturating_sub(1)..(place + 2).min(SIZE);
+        let mut others = near(y).flat_map(|y| near(x).map(move |x| (x, y)));
+        others.any(|(i, j)| at(i, j).triangles != at(x, y).triangles)
+    };
+    let (mut differences, mut open) = (Vec::new(), 0);
+    for (x, y) in (0..SIZE).flat_map(|y| (0..SIZE).map(move |x| (x, y))) {
+        if is_open(x, y) {
+            open += 1;
+            continue;
+        }
+        let drawn = found.drawn(x as u32, y as u32);
+        let is_empty = at(x, y).triangles.is_empty();
+        let difference = match drawn {
+            None if is_empty => 0.0,
+            Some(drawn) if !is_empty => {
+                let wanted = at(x, y).radiance;
+                // |a-b| as a share of max(|b|, 0.01 white).
+                let scale = wanted.abs().max(glam::DVec3::splat(CLOSE));
+                ((drawn - wanted).abs() / scale).max_element()
+            }
+            _ => f64::INFINITY,
+        };
+        differences.push(difference);
+    }
+    differences.sort_by(f64::total_cmp);
+    let agree = differences.iter().filter(|difference| **difference <= CLOSE).count();
+    let worst = differences.last().copied().unwrap_or_default();
+    let median = differences.get(differences.len() / 2).copied().unwrap_or_default();
+    let all = SIZE * SIZE;
+    let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
+    Agreement { agree: share(agree, all - open), open: share(open, all), worst, median }
+}
+
+/// The rows with what the evaluator's pictures agree in, each measured once.
+fn all_measured() -> &'static [(Row, Result<Agreement, String>)] {
+    static MEASURED: OnceLock<Vec<(Row, Result<Agreement, String>)>> = OnceLock::new();
+    MEASURED.get_or_init(|| {
+        let measure = |row: Row| {
+            let mut found = Err("no result".to_owned());
+            let outcome = on_device("eval", |painter| {
+                found = measured(&row, painter, Language::Wesl);
+                Ok(())
+            });
+            (row, outcome.map_err(|_| "the evaluator stopped".to_owned()).and(found))
+        };
+        rows::all().into_iter().map(measure).collect()
+    })
+}
+
+fn failed(reason: impl Into<String>) -> Failed {
+    reason.into().into()
+}
