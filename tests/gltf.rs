@@ -84,10 +84,12 @@ fn measured(row: &Row, painter: &dyn Session, language: Language) -> Result<Agre
     Ok(agreement(&found, &wanted))
 }
 
+/// The picture of a row, once it is drawn.
+type Drawn = Arc<OnceLock<Arc<Vec<Seen>>>>;
+
 /// What the reference draws of a row, once for all executors.
 fn reference(row: &Row, model: &Model) -> Arc<Vec<Seen>> {
-    static DRAWN: Mutex<BTreeMap<&str, Arc<OnceLock<Arc<Vec<Seen>>>>>> =
-        Mutex::new(BTreeMap::new());
+    static DRAWN: Mutex<BTreeMap<&str, Drawn>> = Mutex::new(BTreeMap::new());
     let mut drawn = DRAWN.lock().unwrap_or_else(PoisonError::into_inner);
     let own = drawn.entry(row.name).or_default().clone();
     drop(drawn);

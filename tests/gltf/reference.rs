@@ -139,7 +139,7 @@ impl<'m> Scene<'m> {
             let is_front = ab.cross(ac).dot(direction) < 0.0;
             let material = &self.document["materials"][triangle.material];
             let is_drawn = is_front || material["doubleSided"] == true;
-            (is_inside && is_drawn).then(|| Hit {
+            (is_inside && is_drawn).then_some(Hit {
                 distance,
                 triangle: index,
                 shares: [1.0 - u - v, u, v],
