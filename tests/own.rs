@@ -329,7 +329,7 @@ fn refused() -> Outcome {
         ),
         (
             wgsl("override size: f32; @fragment fn f() -> @location(0) vec4f { return vec4f(size); }".into()),
-            "an `override` has no value",
+            "the override `size` has no value",
         ),
     ];
     for (texts, expected) in cases {
