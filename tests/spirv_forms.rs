@@ -128,8 +128,12 @@ fn contents() -> Outcome {
         ensure(is_named == (*form == "names"), format!("names in {form}: {is_named}"))?;
         let native = Native { optimiser: None, ..(*found.native).clone() };
         ensure(native == *names.native, format!("{form} has another native reflection"))?;
-        let is_told = found.native.optimiser.as_ref().is_some_and(|one| one.contains("spirv-opt"));
-        ensure(is_told == (*form == "optimised"), format!("optimiser of {form}: {is_told}"))?;
+        let is_named_there =
+            found.native.optimiser.as_ref().is_some_and(|one| one.contains("spirv-opt"));
+        ensure(
+            is_named_there == (*form == "optimised"),
+            format!("optimiser of {form}: {is_named_there}"),
+        )?;
     }
     let functions = |found: &Found| counted(&found.bytes, &[op::FUNCTION]);
     ensure(
@@ -189,7 +193,7 @@ fn same_bytes() -> Outcome {
     Ok(())
 }
 
-/// A folder with a program `spirv-opt` that calls the real one, and tells another version.
+/// A folder with a program `spirv-opt` that calls the real one, and prints another version.
 fn other_optimiser(package: &Package, version: &str) -> Result<String, Failed> {
     use std::os::unix::fs::PermissionsExt;
     let folder = package.path(version);

@@ -195,7 +195,7 @@ impl Runner {
                 }
             }
             let found = ready.compare(&frames, ran).into_iter();
-            findings.extend(found.map(|(_, finding)| (owners[index], finding)));
+            findings.extend(found.map(|finding| (owners[index], finding)));
         }
         Ok(findings)
     }
@@ -304,11 +304,7 @@ impl<'r> Ready<'r> {
     }
 
     /// A finding for each target whose numbers differ from the evaluator's.
-    fn compare(
-        &self,
-        frames: &[Drawn],
-        ran: &mut BTreeMap<&'static str, Ran>,
-    ) -> Vec<(Target, Finding)> {
+    fn compare(&self, frames: &[Drawn], ran: &mut BTreeMap<&'static str, Ran>) -> Vec<Finding> {
         let made = match self.runnable.is_fragment() {
             true => Evaluator::new(self).map(|mut made| -> Box<FrameCheck<'_>> {
                 Box::new(move |frame, tally| made.frame(frame, tally))
@@ -319,20 +315,14 @@ impl<'r> Ready<'r> {
         };
         let mut check = match made {
             Ok(check) => check,
-            Err(error) => {
-                let finding = Finding::new(format!("evaluator: {error}"), error);
-                // The finding is one of the evaluator, not of a target. WGSL is never excused by
-                // other numbers of ids.
-                let target = frames.first().map_or(Target::WGSL, |frame| frame.target);
-                return vec![(target, finding)];
-            }
+            Err(error) => return vec![Finding::new(format!("evaluator: {error}"), error)],
         };
         let mut findings = Vec::new();
         for frame in frames {
             let tally = ran.entry(frame.name).or_default();
             if let Err(error) = check(frame, tally) {
                 let kind = format!("{} computes something else on {}", frame.target, frame.name);
-                findings.push((frame.target, self.finding(kind, frame.target, &error)));
+                findings.push(self.finding(kind, frame.target, &error));
             }
         }
         findings

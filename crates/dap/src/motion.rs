@@ -1,4 +1,4 @@
-//! Where the run goes, and what the client is told when it stops.
+//! Where the run goes, and the events that the client gets when it stops.
 
 use lamplight_debug::{Found, Halt, Seen};
 use serde_json::{Value, json};
@@ -7,7 +7,7 @@ use crate::answer::{Failed, Host};
 use crate::breakpoints::Breakpoint;
 use crate::session::{Running, Session, THREAD};
 
-/// How the run is told to move.
+/// The ways in which a client moves the run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Motion {
     /// To the first statement.
@@ -55,7 +55,7 @@ impl Motion {
 }
 
 impl Session {
-    /// Moves the run, and tells where it stopped.
+    /// Moves the run, and sends where it stopped.
     pub fn go(&mut self, motion: Motion, host: &mut dyn Host) -> Events {
         let Self { run, breakpoints, marks, .. } = self;
         let Some(run) = run.as_mut() else { return Vec::new() };

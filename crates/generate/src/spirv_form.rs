@@ -70,8 +70,8 @@ impl<'a> SpirvShaper<'a> {
         *module = match &self.optimiser {
             None => stripped_module(module).into(),
             Some((optimiser, version)) => {
-                Arc::make_mut(native).optimiser = Some(version.clone());
                 let made = optimiser.optimise(module).map_err(|reason| vec![failed(&reason)])?;
+                Arc::make_mut(native).optimiser = Some(version.clone());
                 // Another program wrote it, which may leave something for debuggers.
                 stripped_module(&made).into()
             }

@@ -41,8 +41,8 @@ fn instances() -> Result<(), Failed> {
     }
     document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] = json!(0);
     let refused = drawn(&glb(&document, &buffer), &BEFORE);
-    let told = refused.err().map(|error| format!("{error:?}")).unwrap_or_default();
-    demand(told.contains("have not the same number of rows"), || format!("found {told}"))
+    let message = refused.err().map(|error| format!("{error:?}")).unwrap_or_default();
+    demand(message.contains("have not the same number of rows"), || format!("found {message}"))
 }
 
 /// KHR_node_visibility: "visible: false" hides the node and all of its descendants.
@@ -85,8 +85,8 @@ fn camera_by_its_number() -> Result<(), Failed> {
         demand((found == [255; 3]) == is_there, || format!("at {at}: {found:?}"))?;
     }
     let refused = drawn(&file, &["--camera", "2"]);
-    let told = refused.err().map(|error| format!("{error:?}")).unwrap_or_default();
-    demand(told.contains("no camera 2 in its scene, only 0, 1"), || format!("found {told}"))
+    let message = refused.err().map(|error| format!("{error:?}")).unwrap_or_default();
+    demand(message.contains("no camera 2 in its scene, only 0, 1"), || format!("found {message}"))
 }
 
 /// glTF 2.0, 3.10.2: a picture of another form shows all that the camera does. The camera sees two units to

@@ -106,13 +106,13 @@ fn file_beside() -> Result<(), Failed> {
     let text = document.to_string();
     let folder = TempDir::new()?;
     let missing = render(folder.path(), text.as_bytes(), &BEFORE)?;
-    let told = String::from_utf8_lossy(&missing.stderr).into_owned();
-    let is_told = !missing.status.success() && told.contains("cannot read `the buffer.bin`");
-    demand(is_told, || format!("{}: {told}", missing.status))?;
+    let printed = String::from_utf8_lossy(&missing.stderr).into_owned();
+    let is_printed = !missing.status.success() && printed.contains("cannot read `the buffer.bin`");
+    demand(is_printed, || format!("{}: {printed}", missing.status))?;
     fs::write(folder.path().join("the buffer.bin"), &buffer)?;
     let found = render(folder.path(), text.as_bytes(), &BEFORE)?;
-    let told = String::from_utf8_lossy(&found.stderr).into_owned();
-    demand(found.status.success(), || format!("{}: {told}", found.status))
+    let printed = String::from_utf8_lossy(&found.stderr).into_owned();
+    demand(found.status.success(), || format!("{}: {printed}", found.status))
 }
 
 /// 3.7.2.2: the weights of the node, or else those of the mesh, say how far the targets move vertices.

@@ -111,9 +111,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let counted = ends::with_counters(source)?;
     let source = &source.with_analysed(counted.as_ref());
     let plain = plain::with_plain_forms(source.module, source.info, needs)?;
-    let (module, info) =
-        plain.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
-    let source = &EmitSource { module, info, ..*source };
+    let source = &source.with_analysed(plain.as_ref());
     let options = writer_options(source)?;
     let unlike = rename::rename_types_like_members(source.module);
     let module = unlike.as_ref().unwrap_or(source.module);

@@ -49,9 +49,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let source = &EmitSource { module: plainer.as_ref().unwrap_or(source.module), ..*source };
     let needs = Needs { enclosed_bytes: true, ..Needs::default() };
     let plain = plain::with_plain_forms(source.module, source.info, needs)?;
-    let (module, info) =
-        plain.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
-    let source = &EmitSource { module, info, ..*source };
+    let source = &source.with_analysed(plain.as_ref());
     let options = Options {
         lang_version: (2, 0),
         per_entry_point_map: BTreeMap::from([(source.entry.to_owned(), entry_resources(source)?)]),

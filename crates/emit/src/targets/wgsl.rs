@@ -41,10 +41,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         return Err(reason);
     }
     let with_variables = lets::with_variables(source.module, source.info)?;
-    let (module, info) = with_variables
-        .as_ref()
-        .map_or((source.module, source.info), |(module, info)| (module, info));
-    let source = &EmitSource { module, info, ..*source };
+    let source = &source.with_analysed(with_variables.as_ref());
     let written = specialise::written_module(source.module)?;
     let module = written.as_ref().unwrap_or(source.module);
     let mut text = BoundedText::default();

@@ -1,4 +1,4 @@
-//! A run that goes on when it is told to, and of which copies can be kept.
+//! A run that its caller moves on piece by piece, and of which copies can be kept.
 //!
 //! A copy goes on as the run would, so whoever keeps some can go back without running all again.
 
