@@ -172,7 +172,10 @@ fn no_cascades(pass: &Pass) -> Diagnostic {
 impl Studio<'_> {
     /// Draws a pass before the last one, and keeps what later passes read.
     fn draw(&self, pass: &Pass, left: &mut Left) -> Result<(), Diagnostics> {
-        let prepared = self.ready(pass, left, Part::All)?;
+        // What can be seen through hides nothing from the passes that read depths, either.
+        let is_before = self.values.plan.is_of_viewer(pass) && self.blends();
+        let part = if is_before { Part::Opaque } else { Part::All };
+        let prepared = self.ready(pass, left, part)?;
         if self.values.plan.is_of_viewer(pass) {
             return match pass.needs.screen {
                 true => self.draw_over(pass, &prepared, left),
@@ -300,12 +303,17 @@ impl Studio<'_> {
 
     /// The pass that draws the picture, with a second one for objects that are blended.
     fn with_blended(&self, last: &Pass, left: &Left) -> Result<PreparedPass, Diagnostics> {
-        let mut objects = self.values.scene.objects.iter();
-        if last.needs.screen || !objects.any(|object| object.is_blended) {
+        if !self.blends() {
             return self.ready(last, left, Part::All);
         }
         let blended = Some(Box::new(self.ready(last, left, Part::Blended)?));
         Ok(PreparedPass { blended, ..self.ready(last, left, Part::Opaque)? })
+    }
+
+    /// Whether objects are blended: there are some, and the last pass draws objects.
+    fn blends(&self) -> bool {
+        let draws_objects = self.values.plan.passes.last().is_some_and(|last| !last.needs.screen);
+        draws_objects && self.values.scene.objects.iter().any(|object| object.is_blended)
     }
 
     /// What all objects and views of a pass share.

@@ -233,7 +233,9 @@ impl PreparedPass {
             return Err(vec![Diagnostic::error(codes::PICTURE_INVALID, message).note(help)]);
         }
         let mut found = Vec::new();
-        for slice in std::iter::once(self).chain(&self.farther) {
+        // Blended objects have a stage of their own.
+        let slices = std::iter::once(self).chain(&self.farther);
+        for slice in slices.flat_map(|slice| [Some(slice), slice.blended.as_deref()]).flatten() {
             found.extend(slice.own_fragments_at(pixel, shot).map_err(|problem| vec![problem])?);
         }
         Ok(found)
@@ -249,8 +251,7 @@ impl PreparedPass {
         let (size, pixel) =
             (shot.size.map(|side| side * fine), pixel.map(|at| at * fine + fine / 2));
         let view = self.eye_view([0.0; 2], size)?;
-        let blended = self.blended.iter().flat_map(|blended| blended.items());
-        let items: Vec<DrawItem<'_>> = self.items().chain(blended).collect();
+        let items: Vec<DrawItem<'_>> = self.items().collect();
         let entry = EntryPoint { module: &stage.validated.module, entry: stage.entry };
         let views = std::slice::from_ref(&view);
         let drawing = self.drawing(&items, views, size, Some((entry, self.targets())));

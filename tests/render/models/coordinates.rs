@@ -167,7 +167,10 @@ fn sets_beside_each_other() -> Result<(), Failed> {
     let attributes = &mut document["meshes"][0]["primitives"][1]["attributes"];
     attributes["TEXCOORD_1"] = attributes["TEXCOORD_0"].clone();
     let (_, stderr) = drawn(&glb(&document, &buffer), &BEFORE)?;
-    demand(stderr.contains("count with their mean"), || format!("expected a note: {stderr}"))
+    demand(
+        stderr.contains("counts with its mean: its triangles share places of the first set"),
+        || format!("expected a note: {stderr}"),
+    )
 }
 
 /// An image that cannot be decoded is left out with a note, and the factor remains.

@@ -6,10 +6,11 @@ use serde_json::{Value, json};
 use super::{BEFORE, add_attribute, demand, drawn, glb, is_near, pixel, square};
 
 pub fn tests() -> impl Iterator<Item = Trial> {
-    let cases: [(_, fn() -> _); 4] = [
+    let cases: [(_, fn() -> _); 5] = [
         ("instances", instances),
         ("hidden", hidden),
         ("camera_by_its_number", camera_by_its_number),
+        ("camera_that_is_far", camera_that_is_far),
         ("camera_that_is_wide", camera_that_is_wide),
     ];
     cases.into_iter().map(|(name, run)| Trial::test(format!("render/model/placed/{name}"), run))
@@ -62,8 +63,8 @@ fn hidden() -> Result<(), Failed> {
     })
 }
 
-/// Cameras have their numbers of the document. An orthographic one sees two units to each side, whatever its
-/// distance: the square is the middle half of the picture.
+/// Cameras have their numbers of the document. An orthographic one sees two units to each side: the square is
+/// the middle half of the picture.
 fn camera_by_its_number() -> Result<(), Failed> {
     let (mut document, buffer) = unlit();
     document["cameras"] = json!([
@@ -87,6 +88,32 @@ fn camera_by_its_number() -> Result<(), Failed> {
     let refused = drawn(&file, &["--camera", "2"]);
     let message = refused.err().map(|error| format!("{error:?}")).unwrap_or_default();
     demand(message.contains("no camera 2 in its scene, only 0, 1"), || format!("found {message}"))
+}
+
+/// An orthographic camera shows the same whatever its distance, between its two planes.
+fn camera_that_is_far() -> Result<(), Failed> {
+    let (mut document, buffer) = unlit();
+    for (distance, near, far, is_seen) in [
+        (0.5, 0.1, 1.0, true),
+        (200.0, 0.1, 201.0, true),
+        (5000.0, 4999.0, 5001.0, true),
+        (5000.0, 0.1, 4999.0, false),
+        (200.0, 201.0, 300.0, false),
+    ] {
+        document["cameras"] = json!([{ "type": "orthographic",
+            "orthographic": { "xmag": 2.0, "ymag": 2.0, "znear": near, "zfar": far } }]);
+        document["nodes"] =
+            json!([{ "mesh": 0 }, { "camera": 0, "translation": [0.0, 0.0, distance] }]);
+        document["scenes"] = json!([{ "nodes": [0, 1] }]);
+        let (picture, _) = drawn(&glb(&document, &buffer), &[])?;
+        for (at, is_inside) in [(0.24, false), (0.26, true), (0.74, true), (0.76, false)] {
+            let found = pixel(&picture, at, 0.5);
+            demand((found == [255; 3]) == (is_inside && is_seen), || {
+                format!("from {distance}, {near} to {far}, at {at}: {found:?}")
+            })?;
+        }
+    }
+    Ok(())
 }
 
 /// glTF 2.0, 3.10.2: a picture of another form shows all that the camera does. The camera sees two units to

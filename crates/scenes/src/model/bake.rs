@@ -8,12 +8,30 @@ use super::channels::{Coordinates, ImageChannels};
 use super::mesh::{mesh_coordinates, triangle_indices};
 use super::nodes::PlacedNodes;
 use crate::model::channels::material_parts;
+use lamplight_files::limits::MODEL_CORNERS;
 use std::collections::BTreeSet;
 
 /// The corners of a triangle, each in the first set of its material and in another one.
 pub type TwoSets = [[DVec2; 2]; 3];
 
-/// The triangles of all meshes whose material has these textures, in two sets of coordinates.
+/// What all textures of a model may take together: corners of triangles with those of primitives that
+/// are looked at, and pixels.
+pub struct Budget {
+    corners: usize,
+    pixels: usize,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self { corners: 4 * MODEL_CORNERS, pixels: 1 << 28 }
+    }
+}
+
+/// Why a texture cannot be drawn into the first set.
+type Reason = &'static str;
+
+/// The triangles of all meshes whose material has these textures, in two sets of coordinates, or why
+/// there are none.
 ///
 /// # Errors
 /// Numbers that are not there.
@@ -22,12 +40,16 @@ pub fn triangles_of(
     placed: &PlacedNodes,
     parts: &[ImageChannels],
     sets: [Coordinates; 2],
-) -> Result<Vec<TwoSets>, String> {
+    budget: &mut Budget,
+) -> Result<Result<Vec<TwoSets>, Reason>, String> {
+    const MANY: Reason = "there are too many triangles";
     let mut found = Vec::new();
     let meshes: BTreeSet<usize> = placed.parts.iter().map(|part| part.mesh).collect();
     let document = reader.document;
     for mesh in document.meshes().filter(|mesh| meshes.contains(&mesh.index())) {
         for primitive in mesh.primitives() {
+            let Some(left) = budget.corners.checked_sub(1) else { return Ok(Err(MANY)) };
+            budget.corners = left;
             if material_parts(reader, &primitive.material())? != parts {
                 continue;
             }
@@ -39,6 +61,12 @@ pub fn triangles_of(
                 reader.notes.insert(note);
             }
             let Some(indices) = triangle_indices(reader, &primitive, &place)? else { continue };
+            let left = budget.corners.checked_sub(indices.len());
+            let Some(left) = left.filter(|_| 3 * found.len() + indices.len() <= MODEL_CORNERS)
+            else {
+                return Ok(Err(MANY));
+            };
+            budget.corners = left;
             let first = mesh_coordinates(reader, &primitive, sets[0], &place)?;
             let other = mesh_coordinates(reader, &primitive, sets[1], &place)?;
             let at =
@@ -48,19 +76,24 @@ pub fn triangles_of(
             found.extend(triangles.map(|three| three.map(corner)));
         }
     }
-    Ok(found)
+    Ok(Ok(found))
 }
 
 /// The coordinates in the other set at each pixel of a cell; `None` where no triangle is. The corners are in
-/// pixels of the cell. No result if triangles lie on one another there, or are too many.
-pub fn unwrapped(triangles: &[TwoSets], size: [usize; 2]) -> Option<Vec<Option<DVec2>>> {
-    /// How many pixels are looked at.
-    const MOST: usize = 1 << 26;
+/// pixels of the cell.
+///
+/// # Errors
+/// Why there is no result: triangles lie on one another, or there are too many.
+pub fn unwrapped(
+    triangles: &[TwoSets],
+    size: [usize; 2],
+    budget: &mut Budget,
+) -> Result<Vec<Option<DVec2>>, Reason> {
     /// How far a triangle reaches beyond its edges, in pixels, so that filters find no gaps.
     const RIM: f64 = 2.0;
     let [width, height] = size;
     let mut found: Vec<Option<(DVec2, bool)>> = vec![None; width * height];
-    let (mut seen, mut clashes, mut inner) = (0, 0, 0);
+    let (mut overlaps, mut inner) = (0, 0);
     for triangle in triangles {
         let [a, b, c] = triangle.map(|corner| corner[0]);
         let twice = (b - a).perp_dot(c - a);
@@ -70,10 +103,8 @@ pub fn unwrapped(triangles: &[TwoSets], size: [usize; 2]) -> Option<Vec<Option<D
         // A share of a corner falls by this much in a pixel.
         let slopes = [(c - b), (a - c), (b - a)].map(|edge| edge.length() / twice.abs());
         for (y, x) in pixels_around([a, b, c], RIM, size) {
-            seen += 1;
-            if seen > MOST {
-                return None;
-            }
+            let left = budget.pixels.checked_sub(1);
+            budget.pixels = left.ok_or("its triangles have too many pixels in the image")?;
             let shares = shares_at([a, b, c], twice, DVec2::new(x as f64, y as f64));
             let is_near = shares.iter().zip(slopes).all(|(share, slope)| *share >= -RIM * slope);
             if !is_near {
@@ -84,15 +115,17 @@ pub fn unwrapped(triangles: &[TwoSets], size: [usize; 2]) -> Option<Vec<Option<D
             let pixel = &mut found[y * width + x];
             inner += usize::from(is_inner);
             match pixel {
-                Some((other, true)) if is_inner && other.distance(own) > 1e-3 => clashes += 1,
+                Some((other, true)) if is_inner && other.distance(own) > 1e-3 => overlaps += 1,
                 Some((_, true)) => {}
                 Some(_) if !is_inner => {}
                 _ => *pixel = Some((own, is_inner)),
             }
         }
     }
-    let is_flat = 100 * clashes <= inner;
-    is_flat.then(|| found.into_iter().map(|own| own.map(|(own, _)| own)).collect())
+    if 100 * overlaps > inner {
+        return Err("its triangles share places of the first set");
+    }
+    Ok(found.into_iter().map(|own| own.map(|(own, _)| own)).collect())
 }
 
 /// The pixels in and around a triangle, row and column.
@@ -128,7 +161,7 @@ mod tests {
 
     #[test]
     fn pixels_have_the_other_coordinates() {
-        let found = unwrapped(&square(), [16, 16]).unwrap();
+        let found = unwrapped(&square(), [16, 16], &mut Budget::default()).unwrap();
         let at = |x: usize, y: usize| found[16 * y + x].unwrap();
         assert!(at(2, 6).abs_diff_eq(DVec2::new(0.25, 0.25), 1e-12));
         assert!(at(7, 1).abs_diff_eq(DVec2::new(0.875, 0.875), 1e-12));
@@ -139,9 +172,18 @@ mod tests {
     fn triangles_on_one_another_are_refused() {
         let mut twice = square();
         twice.push(twice[0].map(|[at, other]| [at, other + 0.5]));
-        assert_eq!(unwrapped(&twice, [16, 16]), None);
+        assert!(unwrapped(&twice, [16, 16], &mut Budget::default()).is_err());
         twice.pop();
         twice.push(twice[0]);
-        assert!(unwrapped(&twice, [16, 16]).is_some(), "the same place twice");
+        let same = unwrapped(&twice, [16, 16], &mut Budget::default());
+        assert!(same.is_ok(), "the same place twice");
+    }
+
+    #[test]
+    fn pixels_are_counted_for_all_textures() {
+        let mut budget = Budget { pixels: 1000, ..Budget::default() };
+        let found: Vec<bool> =
+            (0..8).map(|_| unwrapped(&square(), [16, 16], &mut budget).is_ok()).collect();
+        assert_eq!((found.first(), found.last()), (Some(&true), Some(&false)), "{found:?}");
     }
 }

@@ -4,7 +4,7 @@
 
 use crate::model::GltfReader;
 use crate::model::base::Base;
-use crate::model::surface::{is_blended, is_masked};
+use crate::model::surface::has_alpha;
 use glam::{DAffine2, DMat2, DVec2, DVec4};
 use gltf::texture::{MagFilter, WrappingMode};
 use serde_json::Value;
@@ -212,7 +212,7 @@ fn color_parts(reader: &GltfReader<'_>, material: &gltf::Material<'_>) -> Vec<Im
     // An unlit surface beside lit ones emits its colour.
     let is_emitted = material.unlit() && !reader.all_unlit;
     // The alpha of opaque materials counts for nothing.
-    let parts = match (is_emitted, is_masked(material) || is_blended(material)) {
+    let parts = match (is_emitted, has_alpha(material)) {
         (false, false) => [part("base_map", RGB), None],
         (false, true) => [part("base_map", RGBA), None],
         (true, false) => [part("emission_map", RGB), None],

@@ -1,11 +1,11 @@
 //! Primitives of meshes as objects in world space.
 
 use crate::model::GltfReader;
-use crate::model::channels::Coordinates;
+use crate::model::channels::{Coordinates, material_parts};
 use crate::model::deform::{Skinning, Skins, morph};
 use crate::model::nodes::PlacedMesh;
-use crate::model::surface::{self, Means, drawn_alpha, read_surface};
-use crate::model::tangents::set_tangents;
+use crate::model::surface::{self, Means, drawn_alpha, has_alpha, read_surface};
+use crate::model::tangents::{is_crowded, set_tangents, with_any_tangents};
 use crate::model::texture::Sheet;
 use crate::sets::Object;
 use crate::shape::{Shape, Vertex};
@@ -168,7 +168,13 @@ fn mesh_shape(
     let normals = rows(gltf::Semantic::Normals, "NORMAL")?;
     let tangents = rows(gltf::Semantic::Tangents, "TANGENT")?;
     let coordinates = mesh_coordinates(reader, primitive, own, place)?;
+    let parts = material_parts(reader, &primitive.material())?;
+    let of_normals = match parts.iter().find(|part| part.map == "normal_map") {
+        Some(part) => Some(mesh_coordinates(reader, primitive, part.coordinates, place)?),
+        None => None,
+    };
     let colors = vertex_colors(reader, primitive, place)?;
+    let has_alpha = has_alpha(&primitive.material());
     let vector = |row: &[f64; 4]| DVec3::new(row[0], row[1], row[2]);
     let row = |rows: &Option<Vec<[f64; 4]>>, index: usize| {
         rows.as_ref().and_then(|rows| rows.get(index).copied())
@@ -180,9 +186,10 @@ fn mesh_shape(
             position: vector(position),
             normal: normal.unwrap_or(DVec3::Y),
             color: row(&colors, index).map_or(DVec3::ONE, |color| vector(&color)),
-            alpha: row(&colors, index).map_or(1.0, |[_, _, _, alpha]| alpha),
+            alpha: row(&colors, index).filter(|_| has_alpha).map_or(1.0, |color| color[3]),
             uv,
-            light_uv: uv,
+            // A model has no light map. Its tangents follow these coordinates.
+            light_uv: of_normals.as_ref().and_then(|all| all.get(index)).copied().unwrap_or(uv),
             tangent: row(&tangents, index).map_or(DVec4::ZERO, DVec4::from_array),
         }
     };
@@ -199,6 +206,17 @@ fn mesh_shape(
     if normals.is_none() {
         shape = shape.faceted();
     }
-    let is_given = normals.is_some() && tangents.is_some();
-    Ok(if is_given { shape } else { set_tangents(shape) })
+    if normals.is_some() && tangents.is_some() {
+        return Ok(shape);
+    }
+    // Nothing else reads them.
+    if of_normals.is_none() && !surface::is_anisotropic(&primitive.material()) {
+        return Ok(with_any_tangents(shape));
+    }
+    if is_crowded(&shape) {
+        let note = format!("{place}: so many triangles meet in a point that it has any tangents");
+        reader.notes.insert(note);
+        return Ok(with_any_tangents(shape));
+    }
+    Ok(set_tangents(shape))
 }

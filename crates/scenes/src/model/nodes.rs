@@ -310,8 +310,8 @@ impl GltfLight {
     }
 }
 
-/// From how far away an orthographic camera sees, as a multiple of what it shows and of the model: a
-/// pixel of 1,000 is then off by one where the lines of sight are not parallel.
+/// From how far away an orthographic camera sees the middle of the model, as a multiple of what it shows
+/// and of the model: a pixel of 1,000 is then off by one at the model's front and back.
 const FAR_OFF: f64 = 1000.0;
 
 impl GltfCamera {
@@ -326,14 +326,13 @@ impl GltfCamera {
             // Seen from far away through a narrow angle, lines of sight are parallel.
             Extent::HalfHeight(half) => {
                 let back = FAR_OFF * half.max(bounds.radius);
-                let far = far.unwrap_or_default().max(1.001 * near);
-                return Eye {
-                    position: position - ahead * back,
-                    target: position,
-                    fov_y: 2.0 * (half / back).atan(),
-                    near: back + near,
-                    far: back + far,
-                };
+                // Everything is moved away from the camera, so that the middle is that far off.
+                let moved = back - ahead.dot(bounds.middle - position);
+                let near = (moved + near).max(back / FAR_OFF);
+                let far = (moved + far.unwrap_or_default()).max(1.001 * near);
+                let position = position - ahead * moved;
+                let target = position + ahead * back;
+                return Eye { position, target, fov_y: 2.0 * (half / back).atan(), near, far };
             }
         };
         let near = if near > 0.0 { near } else { 0.005 * bounds.radius };

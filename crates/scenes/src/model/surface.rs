@@ -159,9 +159,23 @@ fn left_out(reader: &mut GltfReader<'_>, material: &gltf::Material<'_>) {
     reader.notes.insert(note.to_owned());
 }
 
-/// Whether points of a material are left out by their alpha.
+/// Whether points of a material are left out by their alpha. No alpha is below a threshold of 0.
 pub fn is_masked(material: &gltf::Material<'_>) -> bool {
-    material.alpha_mode() == AlphaMode::Mask
+    material.alpha_mode() == AlphaMode::Mask && cutoff(material) > 0.0
+}
+
+fn cutoff(material: &gltf::Material<'_>) -> f64 {
+    f64::from(material.alpha_cutoff().unwrap_or(0.5))
+}
+
+/// Whether highlights have a direction along the surface.
+pub fn is_anisotropic(material: &gltf::Material<'_>) -> bool {
+    material.extension_value("KHR_materials_anisotropy").is_some()
+}
+
+/// Whether alpha has a meaning. That of an opaque material is ignored.
+pub fn has_alpha(material: &gltf::Material<'_>) -> bool {
+    is_masked(material) || is_blended(material)
 }
 
 /// Whether a material is blended over what is behind it.
@@ -176,11 +190,10 @@ pub fn drawn_alpha(material: &gltf::Material<'_>) -> f64 {
     if is_blended(material) {
         return Base::of(material).color[3].clamp(0.0, 1.0);
     }
-    let cutoff = f64::from(material.alpha_cutoff().unwrap_or(0.5));
-    if !is_masked(material) || cutoff <= 0.0 {
+    if !is_masked(material) {
         return 1.0;
     }
-    Base::of(material).color[3] * 0.5 / cutoff
+    Base::of(material).color[3] * 0.5 / cutoff(material)
 }
 
 /// Axes of `forward`, and whether a material needs them.

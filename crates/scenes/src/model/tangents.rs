@@ -37,7 +37,7 @@ impl Geometry for Corners<'_> {
     }
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        self.vertex(face, corner).uv.as_vec2().to_array()
+        self.vertex(face, corner).light_uv.as_vec2().to_array()
     }
 
     fn set_tangent(&mut self, found: Option<TangentSpace>, face: usize, corner: usize) {
@@ -45,13 +45,34 @@ impl Geometry for Corners<'_> {
     }
 }
 
-/// Gives all vertices tangents along u. A vertex whose triangles have several is divided. Green in a
-/// normal map points up in the image, which is against v in glTF, so the sign of MikkTSpace is turned.
+/// The most triangles in one point. MikkTSpace goes from each to the next by a call of its own, and
+/// compares all of them with one another.
+const CROWD: usize = 1000;
+
+/// Whether more triangles meet in a point than tangents are found for.
+pub fn is_crowded(shape: &Shape) -> bool {
+    let place = |index: &u32| {
+        let Vertex { position, .. } = &shape.vertices[*index as usize];
+        position.as_vec3().to_array().map(f32::to_bits)
+    };
+    let mut places: Vec<[u32; 3]> = shape.indices.iter().map(place).collect();
+    places.sort_unstable();
+    places.chunk_by(|one, other| one == other).any(|same| same.len() > CROWD)
+}
+
+/// Gives all vertices tangents in any direction, for surfaces that do not show it.
+pub fn with_any_tangents(shape: Shape) -> Shape {
+    shape.map(|vertex| vertex.tangent = vertex_tangent(vertex, None))
+}
+
+/// Gives all vertices tangents along u of the second coordinates, which are those of the normal map. A
+/// vertex whose triangles have several is divided. Green in a normal map points up in the image, which
+/// is against v in glTF, so the sign of MikkTSpace is turned.
 pub fn set_tangents(shape: Shape) -> Shape {
     let tangents = vec![None; shape.indices.len()];
     let mut corners = Corners { shape: &shape, tangents };
     // Without coordinates there is nothing to find.
-    let mut coordinates = shape.vertices.iter().map(|vertex| vertex.uv);
+    let mut coordinates = shape.vertices.iter().map(|vertex| vertex.light_uv);
     let first = coordinates.next();
     let is_made =
         coordinates.any(|uv| Some(uv) != first) && generate_tangents(&mut corners).is_ok();
@@ -100,8 +121,8 @@ mod tests {
             normal: DVec3::Z,
             color: DVec3::ONE,
             alpha: 1.0,
-            uv: DVec2::new(across * x, 1.0 - y),
-            light_uv: DVec2::ZERO,
+            uv: DVec2::ZERO,
+            light_uv: DVec2::new(across * x, 1.0 - y),
             tangent: DVec4::ZERO,
         };
         let vertices = vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)];
@@ -123,7 +144,7 @@ mod tests {
     fn mirrored_images_divide_vertices() {
         let mut shape = upright(1.0);
         shape.vertices.push(Vertex { position: DVec3::NEG_X, ..shape.vertices[0] });
-        shape.vertices[3].uv = DVec2::new(1.0, 1.0);
+        shape.vertices[3].light_uv = DVec2::new(1.0, 1.0);
         shape.indices.extend([0, 2, 3]);
         let Shape { vertices, indices } = set_tangents(shape);
         assert_eq!(vertices.len(), 6);
@@ -133,9 +154,19 @@ mod tests {
     }
 
     #[test]
+    fn fans_are_crowded() {
+        let mut shape = upright(1.0);
+        assert!(!is_crowded(&shape));
+        shape.indices = [0, 1, 2].repeat(CROWD + 1);
+        assert!(is_crowded(&shape));
+        let found = with_any_tangents(upright(1.0)).vertices;
+        assert!(found.iter().all(|vertex| vertex.tangent.truncate().dot(vertex.normal) == 0.0));
+    }
+
+    #[test]
     fn faces_without_an_image_have_a_tangent() {
         let mut shape = upright(1.0);
-        shape.vertices.iter_mut().for_each(|vertex| vertex.uv = DVec2::ZERO);
+        shape.vertices.iter_mut().for_each(|vertex| vertex.light_uv = DVec2::ZERO);
         let found = set_tangents(shape).vertices;
         assert!(found.iter().all(|vertex| vertex.tangent.truncate().dot(vertex.normal) == 0.0));
         assert!(found.iter().all(|vertex| vertex.tangent.w == 1.0));

@@ -10,7 +10,7 @@ use gltf::image::Source;
 use image::{DynamicImage, ImageDecoder as _, ImageError};
 
 use super::GltfReader;
-use super::bake::{triangles_of, unwrapped};
+use super::bake::{Budget, triangles_of, unwrapped};
 use super::files::uri_bytes;
 use super::mesh::{has_triangles, mesh_coordinates};
 use super::nodes::PlacedNodes;
@@ -96,7 +96,7 @@ pub fn texture_sheet(reader: &mut GltfReader<'_>, placed: &PlacedNodes) -> Resul
         reader.notes.insert(note);
     }
     let sizes = map_sizes(reader, &cells)?;
-    let mut maps = BTreeMap::new();
+    let (mut maps, mut budget) = (BTreeMap::new(), Budget::default());
     for (parts, cell) in &cells {
         for part in parts {
             let [width, height] = sizes.get(part.map).map_or([1; 2], |cell| cell.size);
@@ -109,7 +109,8 @@ pub fn texture_sheet(reader: &mut GltfReader<'_>, placed: &PlacedNodes) -> Resul
             if part.coordinates.set == cell.own.set {
                 place_image(map, part, &image, place, |share| cell.in_texture(part, share));
             } else {
-                let found = other_set(reader, placed, (parts, cell), part, [width, height])?;
+                let size = [width, height];
+                let found = other_set(reader, placed, (parts, cell), (part, size), &mut budget)?;
                 place_other(map, part, &image, place, found);
             }
         }
@@ -130,22 +131,26 @@ fn other_set(
     reader: &mut GltfReader<'_>,
     placed: &PlacedNodes,
     (parts, cell): (&[ImageChannels], &Cell),
-    part: &ImageChannels,
-    size: [usize; 2],
+    (part, size): (&ImageChannels, [usize; 2]),
+    budget: &mut Budget,
 ) -> Result<Option<Vec<Option<DVec2>>>, String> {
-    let pixels = DVec2::new(size[0] as f64, size[1] as f64);
-    let mut triangles = triangles_of(reader, placed, parts, [cell.own, part.coordinates])?;
-    for [first, _] in triangles.iter_mut().flatten() {
-        *first = cell.place(*first) * pixels - 0.5;
+    let found = if part.map == "normal_map" {
+        Err("its normals have their directions from the first set")
+    } else {
+        let pixels = DVec2::new(size[0] as f64, size[1] as f64);
+        let sets = [cell.own, part.coordinates];
+        triangles_of(reader, placed, parts, sets, budget)?.and_then(|mut triangles| {
+            for [first, _] in triangles.iter_mut().flatten() {
+                *first = cell.place(*first) * pixels - 0.5;
+            }
+            unwrapped(&triangles, size, budget)
+        })
+    };
+    if let Err(reason) = found {
+        let what = "a texture with another set of coordinates than the first of its material";
+        reader.notes.insert(format!("{what} counts with its mean: {reason}"));
     }
-    // A bent normal has its directions from the first set.
-    let found = if part.map == "normal_map" { None } else { unwrapped(&triangles, size) };
-    if found.is_none() {
-        let what = "textures with other coordinates than the first one of their material count with \
-            their mean, where triangles share places of the first one";
-        reader.notes.insert(what.to_owned());
-    }
-    Ok(found)
+    Ok(found.ok())
 }
 
 /// Writes the channels of an image into a cell by the coordinates of each pixel, and the image's mean
