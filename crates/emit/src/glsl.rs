@@ -141,6 +141,7 @@ fn first_needs(version: Version) -> Needs {
         clamped_words: !has_since(version, 420, Some(300)),
         enclosed_bytes: true,
         separate_choices: false,
+        unpacked_choices: false,
     }
 }
 

@@ -34,6 +34,9 @@ pub struct Needs {
     /// Four unsigned numbers packed to bytes, as an operand of something: naga's writers of texts put
     /// no parentheses around the operators that they write for it.
     pub enclosed_bytes: bool,
+    /// Vectors of three as what is chosen between: Metal packs them where they are members, and takes
+    /// a choice between a packed vector and another one for ambiguous.
+    pub unpacked_choices: bool,
 }
 
 /// What stands in the place of an expression.
@@ -47,6 +50,8 @@ enum Form {
     Clamped(VectorSize),
     /// An operand of an operator, around which each writer puts parentheses.
     Enclosed,
+    /// A member that becomes a vector of numbers of this kind and width, which it is already.
+    Unpacked(ScalarKind, u8),
     /// A conversion of vectors of this size to integers, from floats with these bounds.
     Bounded(Option<VectorSize>, [Literal; 2]),
 }
@@ -99,47 +104,85 @@ fn forms(
     needs: Needs,
 ) -> BTreeMap<Value, Form> {
     let mut found = repeated_offsets(function, needs);
-    for (handle, expression) in function.expressions.iter() {
-        let form = match *expression {
-            Expression::Select { condition, accept: _, reject: _ } if needs.separate_choices => {
-                match (shape(module, info, condition), shape(module, info, handle)) {
-                    (Some((Some(size), _)), Some((_, scalar)))
-                        if scalar.kind != ScalarKind::Float =>
-                    {
-                        Some(Form::Separate(size, scalar))
-                    }
-                    _ => None,
-                }
-            }
-            Expression::Binary {
-                op: BinaryOperator::Divide | BinaryOperator::Modulo,
-                left: _,
-                right,
-            } if needs.defined_divisors && !is_harmless(module, function, right) => {
-                match shape(module, info, handle) {
-                    Some((size, Scalar::I32)) => Some(Form::Defined(size, true)),
-                    Some((size, Scalar::U32)) => Some(Form::Defined(size, false)),
-                    _ => None,
-                }
-            }
-            Expression::As { expr, kind, convert: Some(4) } if needs.bounded_integers => {
-                shape(module, info, expr)
-                    .and_then(|(size, from)| Some(Form::Bounded(size, integer_bounds(from, kind)?)))
-            }
-            Expression::Math { fun: MathFunction::Unpack4x8snorm, .. } if needs.clamped_bytes => {
-                Some(Form::Clamped(VectorSize::Quad))
-            }
-            Expression::Math { fun: MathFunction::Unpack2x16snorm, .. } if needs.clamped_words => {
-                Some(Form::Clamped(VectorSize::Bi))
-            }
-            Expression::Math {
-                fun: MathFunction::Pack4xU8 | MathFunction::Pack4xU8Clamp, ..
-            } if needs.enclosed_bytes => Some(Form::Enclosed),
-            _ => None,
-        };
-        found.extend(form.map(|form| (handle, form)));
+    if needs.unpacked_choices {
+        found.extend(chosen_members(module, function, info));
+    }
+    for (handle, _) in function.expressions.iter() {
+        found.extend(own_form(module, (function, info), handle, needs).map(|form| (handle, form)));
     }
     found
+}
+
+/// The form that an expression needs for what it is itself.
+fn own_form(
+    module: &Module,
+    (function, info): (&Function, &FunctionInfo),
+    handle: Value,
+    needs: Needs,
+) -> Option<Form> {
+    match function.expressions[handle] {
+        Expression::Select { condition, accept: _, reject: _ } if needs.separate_choices => {
+            match (shape(module, info, condition), shape(module, info, handle)) {
+                (Some((Some(size), _)), Some((_, scalar))) if scalar.kind != ScalarKind::Float => {
+                    Some(Form::Separate(size, scalar))
+                }
+                _ => None,
+            }
+        }
+        Expression::Binary {
+            op: BinaryOperator::Divide | BinaryOperator::Modulo,
+            left: _,
+            right,
+        } if needs.defined_divisors && !is_harmless(module, function, right) => {
+            match shape(module, info, handle) {
+                Some((size, Scalar::I32)) => Some(Form::Defined(size, true)),
+                Some((size, Scalar::U32)) => Some(Form::Defined(size, false)),
+                _ => None,
+            }
+        }
+        Expression::As { expr, kind, convert: Some(4) } if needs.bounded_integers => {
+            shape(module, info, expr)
+                .and_then(|(size, from)| Some(Form::Bounded(size, integer_bounds(from, kind)?)))
+        }
+        Expression::Math { fun: MathFunction::Unpack4x8snorm, .. } if needs.clamped_bytes => {
+            Some(Form::Clamped(VectorSize::Quad))
+        }
+        Expression::Math { fun: MathFunction::Unpack2x16snorm, .. } if needs.clamped_words => {
+            Some(Form::Clamped(VectorSize::Bi))
+        }
+        Expression::Math { fun: MathFunction::Pack4xU8 | MathFunction::Pack4xU8Clamp, .. }
+            if needs.enclosed_bytes =>
+        {
+            Some(Form::Enclosed)
+        }
+        _ => None,
+    }
+}
+
+/// The members of values that are vectors of three and that a choice may give.
+fn chosen_members(
+    module: &Module,
+    function: &Function,
+    info: &FunctionInfo,
+) -> BTreeMap<Value, Form> {
+    let chosen = function.expressions.iter().filter_map(|(_, expression)| match expression {
+        Expression::Select { condition: _, accept, reject } => Some([*accept, *reject]),
+        _ => None,
+    });
+    let member = |value: Value| {
+        let Expression::AccessIndex { base, index: _ } = function.expressions[value] else {
+            return None;
+        };
+        let inner = info[base].ty.inner_with(&module.types);
+        let is_value = matches!(inner, TypeInner::Struct { members: _, span: _ });
+        match shape(module, info, value) {
+            Some((Some(VectorSize::Tri), Scalar { kind, width })) if is_value => {
+                Some((value, Form::Unpacked(kind, width)))
+            }
+            _ => None,
+        }
+    };
+    chosen.flatten().filter_map(member).collect()
 }
 
 /// The least and the largest float that an integer of 32 bits can be.
@@ -246,6 +289,10 @@ impl Maker<'_> {
                 let (left, right) =
                     (self.add(expression), self.add(Expression::Literal(Literal::U32(0))));
                 self.both(BinaryOperator::InclusiveOr, left, right)
+            }
+            (Form::Unpacked(kind, width), expression) => {
+                let expr = self.add(expression);
+                self.add(Expression::As { expr, kind, convert: Some(width) })
             }
             (Form::Bounded(size, bounds), Expression::As { expr, kind, convert }) => {
                 let [least, most] = bounds.map(|bound| self.all(size, bound));

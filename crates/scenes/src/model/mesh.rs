@@ -160,6 +160,39 @@ fn mesh_shape(
     (part, skinning): (&PlacedMesh, Option<&Skinning>),
     place: &str,
 ) -> Result<Shape, String> {
+    let material = primitive.material();
+    let parts = material_parts(reader, &material)?;
+    let of_normals = match parts.iter().find(|part| part.map == "normal_map") {
+        Some(part) => Some(mesh_coordinates(reader, primitive, part.coordinates, place)?),
+        None => None,
+    };
+    // Nothing else reads tangents.
+    let is_read = of_normals.is_some() || surface::is_anisotropic(&material);
+    let mut vertices = mesh_vertices(reader, primitive, own, of_normals.as_deref(), place)?;
+    morph(reader, primitive, part, &mut vertices, place)?;
+    let is_mirrored = match skinning {
+        Some(skinning) => skinning.apply(reader, primitive, &mut vertices, place)?,
+        None => false,
+    };
+    let shape = Shape { vertices, indices };
+    let shape = if is_mirrored { mirror_winding(shape) } else { shape };
+    let has = |semantic: gltf::Semantic| primitive.get(&semantic).is_some();
+    let has_normals = has(gltf::Semantic::Normals);
+    let shape = if has_normals { shape } else { shape.faceted() };
+    if has_normals && has(gltf::Semantic::Tangents) {
+        return Ok(shape);
+    }
+    Ok(if is_read { made_tangents(reader, shape, place) } else { with_any_tangents(shape) })
+}
+
+/// The vertices of a primitive as the file gives them.
+fn mesh_vertices(
+    reader: &GltfReader<'_>,
+    primitive: &gltf::Primitive<'_>,
+    own: Coordinates,
+    of_normals: Option<&[DVec2]>,
+    place: &str,
+) -> Result<Vec<Vertex>, String> {
     let rows = |semantic: gltf::Semantic, name: &str| match primitive.get(&semantic) {
         Some(accessor) => reader.rows(&accessor, &format!("{place}.attributes.{name}")).map(Some),
         None => Ok(None),
@@ -168,11 +201,6 @@ fn mesh_shape(
     let normals = rows(gltf::Semantic::Normals, "NORMAL")?;
     let tangents = rows(gltf::Semantic::Tangents, "TANGENT")?;
     let coordinates = mesh_coordinates(reader, primitive, own, place)?;
-    let parts = material_parts(reader, &primitive.material())?;
-    let of_normals = match parts.iter().find(|part| part.map == "normal_map") {
-        Some(part) => Some(mesh_coordinates(reader, primitive, part.coordinates, place)?),
-        None => None,
-    };
     let colors = vertex_colors(reader, primitive, place)?;
     let has_alpha = has_alpha(&primitive.material());
     let vector = |row: &[f64; 4]| DVec3::new(row[0], row[1], row[2]);
@@ -189,34 +217,19 @@ fn mesh_shape(
             alpha: row(&colors, index).filter(|_| has_alpha).map_or(1.0, |color| color[3]),
             uv,
             // A model has no light map. Its tangents follow these coordinates.
-            light_uv: of_normals.as_ref().and_then(|all| all.get(index)).copied().unwrap_or(uv),
+            light_uv: of_normals.and_then(|all| all.get(index)).copied().unwrap_or(uv),
             tangent: row(&tangents, index).map_or(DVec4::ZERO, DVec4::from_array),
         }
     };
-    let mut vertices: Vec<Vertex> = positions.iter().enumerate().map(vertex).collect();
-    morph(reader, primitive, part, &mut vertices, place)?;
-    let is_mirrored = match skinning {
-        Some(skinning) => skinning.apply(reader, primitive, &mut vertices, place)?,
-        None => false,
-    };
-    let mut shape = Shape { vertices, indices };
-    if is_mirrored {
-        shape = mirror_winding(shape);
-    }
-    if normals.is_none() {
-        shape = shape.faceted();
-    }
-    if normals.is_some() && tangents.is_some() {
-        return Ok(shape);
-    }
-    // Nothing else reads them.
-    if of_normals.is_none() && !surface::is_anisotropic(&primitive.material()) {
-        return Ok(with_any_tangents(shape));
-    }
+    Ok(positions.iter().enumerate().map(vertex).collect())
+}
+
+/// A shape with the tangents that its texture coordinates give.
+fn made_tangents(reader: &mut GltfReader<'_>, shape: Shape, place: &str) -> Shape {
     if is_crowded(&shape) {
         let note = format!("{place}: so many triangles meet in a point that it has any tangents");
         reader.notes.insert(note);
-        return Ok(with_any_tangents(shape));
+        return with_any_tangents(shape);
     }
-    Ok(set_tangents(shape))
+    set_tangents(shape)
 }
