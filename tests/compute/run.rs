@@ -76,6 +76,18 @@ pub fn opened() -> Result<Vec<Opened>, String> {
 }
 
 impl Opened {
+    /// Opens an executor on the driver that draws files of bundles.
+    ///
+    /// # Errors
+    /// There is none, or it is missing.
+    pub fn second(name: &str) -> Result<Self, String> {
+        let entry = executors::ALL.iter().copied().find(|one| one.name == name);
+        let (entry, form) = entry.and_then(|one| Some((one, one.compute?))).ok_or("no executor")?;
+        let shipping = entry.shipping.as_ref().ok_or("no second driver")?;
+        let session = (shipping.open)().map_err(|error| format!("{error:?}"))?;
+        Ok(Self { entry, form, session })
+    }
+
     /// Runs all of them. `None` where there is no output for the executor's target.
     pub fn run(&mut self, all: &[Compiled]) -> Vec<Option<DispatchResult>> {
         let dispatches: Vec<_> = all.iter().map(|one| one.dispatch(self.form)).collect();

@@ -24,6 +24,8 @@ const FAULTS_OF_WGPU: [&str; 2] = ["Pipeline constant error", "wgpu or naga pani
 
 pub struct Runner {
     sessions: Vec<Opened>,
+    /// Another driver for our SPIR-V, opened when it is needed.
+    second: Option<Opened>,
 }
 
 type Refused = Vec<Diagnostic>;
@@ -41,7 +43,7 @@ impl Runner {
                 |one: &Opened| one.form == ComputeForm::Module || names.contains(&one.entry.name);
             sessions.retain(is_wanted);
         }
-        Ok(Self { sessions })
+        Ok(Self { sessions, second: None })
     }
 
     /// Runs programs. Each finding has the index of its program.
@@ -49,7 +51,8 @@ impl Runner {
         let (compiled, owners) = self.compiled(made, tally);
         let mut findings = Vec::new();
         let mut wanted: Vec<Option<Buffers>> = vec![None; compiled.len()];
-        for executor in &mut self.sessions {
+        let Self { sessions, second } = self;
+        for executor in sessions {
             let name = executor.entry.name;
             for (index, result) in executor.run(&compiled).into_iter().enumerate() {
                 let owner = owners[index];
@@ -64,10 +67,13 @@ impl Runner {
                     continue;
                 }
                 let Some(wanted) = &wanted[index] else { continue };
-                let what =
-                    tally.compare(executor, &compiled[index], &made[owner].1, wanted, result);
-                if let Some(what) = what {
-                    let output = compiled[index].output_text(executor.form);
+                let (compiled, program) = (&compiled[index], &made[owner].1);
+                if let Some(what) = tally.compare(executor, compiled, program, wanted, result) {
+                    if name == "spirv" && is_right(second, compiled, program, wanted) {
+                        tally.drivers.entry(name).or_default().push(made[owner].0);
+                        continue;
+                    }
+                    let output = compiled.output_text(executor.form);
                     findings.push((owner, finding(name, &what, &output)));
                 }
             }
@@ -116,6 +122,25 @@ impl Runner {
         let found = self.run(&[(0, program.clone())], &mut Tally::default());
         found.iter().any(|(_, finding)| finding.kind == kind)
     }
+}
+
+/// Whether the same words of SPIR-V give what the evaluator gives on another driver.
+fn is_right(
+    second: &mut Option<Opened>,
+    compiled: &Compiled,
+    program: &Program,
+    wanted: &Buffers,
+) -> bool {
+    let opened = match second {
+        Some(opened) => opened,
+        None => match Opened::second("spirv") {
+            Ok(opened) => second.insert(opened),
+            Err(_) => return false,
+        },
+    };
+    let result = opened.run(std::slice::from_ref(compiled)).pop().flatten();
+    let ran = matches!(result, Some(Ok(_)));
+    ran && Tally::default().compare(opened, compiled, program, wanted, result).is_none()
 }
 
 fn finding(name: &str, what: &str, output: &str) -> Finding {
