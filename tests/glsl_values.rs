@@ -5,7 +5,7 @@
 //! compute shader that writes words to a buffer.
 
 mod cases;
-mod device;
+pub mod device;
 mod program;
 
 use device::Device;

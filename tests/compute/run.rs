@@ -1,6 +1,7 @@
 //! Compiles compute entry points for all targets, and runs them on all executors.
 
 use std::collections::BTreeMap;
+use std::fmt::Write;
 
 use lamplight::bundle::{Conventions, Language, Target};
 use lamplight::compose::{Composed, lean};
@@ -12,6 +13,8 @@ use lamplight::execute::frame::{Buffers, EntryPoint};
 use lamplight::execute::shipped::Shipped;
 use lamplight::link::{Linker, TextForms, compile};
 use lamplight::validate::{Validated, validate};
+
+use crate::glsl_values::device::compile_spirv;
 
 /// The targets that have compute stages.
 pub const TARGETS: [Target; 5] =
@@ -111,6 +114,23 @@ impl Compiled {
         Some(Dispatch { stage, buffers: &self.buffers, groups: self.groups })
     }
 
+    /// The same with one output, as SPIR-V: that of SPIR-V as it is, or what glslang makes of GLSL 4.50.
+    ///
+    /// # Errors
+    /// There is no output, or glslang refuses it.
+    pub fn as_spirv(&self, target: Target) -> Result<Self, String> {
+        let output = |target| self.outputs[&target].clone().map_err(|_| "no output".to_owned());
+        let mut spirv = output(Target::SPIRV)?;
+        if target == Target::GLSL450 {
+            let text = output(target)?.text().into_owned();
+            let words = compile_spirv(&with_sets(&text))?;
+            spirv.bytes = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        }
+        let outputs = [(Target::SPIRV, Ok(spirv))].into();
+        let (validated, entry) = (self.validated.clone(), self.entry.clone());
+        Ok(Self { validated, entry, buffers: self.buffers.clone(), groups: self.groups, outputs })
+    }
+
     /// Whether the output for an executor writes to a buffer.
     pub fn binds(&self, form: ComputeForm, (group, binding): (u32, u32)) -> bool {
         let ComputeForm::Output(target) = form else { return true };
@@ -135,4 +155,17 @@ impl Compiled {
 /// Whether an error only says that an executor lacks something.
 pub fn is_lack(error: &Diagnostic) -> bool {
     error.code.name == codes::EXECUTOR_LACKS.name
+}
+
+/// GLSL with the author's numbers of bindings, in the place of the one number that OpenGL has.
+fn with_sets(text: &str) -> String {
+    let mut parts = text.split("binding = ");
+    let mut made = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end = part.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(part.len());
+        let (number, rest) = part.split_at(end);
+        let number = number.parse::<u32>().unwrap_or_default();
+        let _ = write!(made, "set = {}, binding = {}{rest}", number / 16, number % 16);
+    }
+    made
 }

@@ -171,7 +171,7 @@ fn layout_of(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 }
 
 /// Compiles a compute shader by glslang.
-fn compile_spirv(text: &str) -> Result<Vec<u32>, String> {
+pub fn compile_spirv(text: &str) -> Result<Vec<u32>, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let (source, output) = (folder.path().join("a.comp"), folder.path().join("a.spv"));
     std::fs::write(&source, text).map_err(|error| error.to_string())?;

@@ -142,6 +142,7 @@ fn first_needs(version: Version) -> Needs {
         enclosed_bytes: true,
         separate_choices: false,
         unpacked_choices: false,
+        masked_shifts: true,
     }
 }
 

@@ -37,6 +37,9 @@ pub struct Needs {
     /// Vectors of three as what is chosen between: Metal packs them where they are members, and takes
     /// a choice between a packed vector and another one for ambiguous.
     pub unpacked_choices: bool,
+    /// Shifts by less than the bits of a number: WGSL counts modulo these, other languages leave the
+    /// result open.
+    pub masked_shifts: bool,
 }
 
 /// What stands in the place of an expression.
@@ -50,6 +53,8 @@ enum Form {
     Clamped(VectorSize),
     /// An operand of an operator, around which each writer puts parentheses.
     Enclosed,
+    /// A shift whose right side has this size, and keeps the bits of this number.
+    Masked(Option<VectorSize>, u32),
     /// A member that becomes a vector of numbers of this kind and width, which it is already.
     Unpacked(ScalarKind, u8),
     /// A conversion of vectors of this size to integers, from floats with these bounds.
@@ -140,6 +145,15 @@ fn own_form(
                 _ => None,
             }
         }
+        Expression::Binary {
+            op: BinaryOperator::ShiftLeft | BinaryOperator::ShiftRight,
+            left: _,
+            right,
+        } if needs.masked_shifts => {
+            let (size, Scalar { kind: _, width }) = shape(module, info, handle)?;
+            let most = u32::from(width) * 8 - 1;
+            (!is_within(module, function, right, most)).then_some(Form::Masked(size, most))
+        }
         Expression::As { expr, kind, convert: Some(4) } if needs.bounded_integers => {
             shape(module, info, expr)
                 .and_then(|(size, from)| Some(Form::Bounded(size, integer_bounds(from, kind)?)))
@@ -224,30 +238,45 @@ fn repeated_offsets(function: &Function, needs: Needs) -> BTreeMap<Value, Form> 
 /// Whether a divisor is a number other than 0 and -1.
 fn is_harmless(module: &Module, function: &Function, divisor: Value) -> bool {
     let is_number = |literal: Literal| !matches!(literal, Literal::I32(0 | -1) | Literal::U32(0));
-    match &function.expressions[divisor] {
-        Expression::Literal(literal) => is_number(*literal),
-        Expression::Constant(constant) => {
-            let init = module.constants[*constant].init;
-            is_harmless_constant(module, init, &is_number)
+    all_are(module, &function.expressions, divisor, &is_number)
+}
+
+/// Whether a number without a sign is known not to be above another one.
+fn is_within(module: &Module, function: &Function, value: Value, most: u32) -> bool {
+    let all = |value: Value, most: u32| {
+        let is_number = |literal: Literal| matches!(literal, Literal::U32(one) if one <= most);
+        all_are(module, &function.expressions, value, &is_number)
+    };
+    match function.expressions[value] {
+        Expression::Binary { op: BinaryOperator::And, left, right } => {
+            all(left, most) || all(right, most)
         }
-        Expression::Splat { size: _, value } => is_harmless(module, function, *value),
-        Expression::Compose { ty: _, components } => {
-            components.iter().all(|one| is_harmless(module, function, *one))
+        Expression::Binary { op: BinaryOperator::Modulo, left: _, right } => {
+            all(right, most + 1) && is_harmless(module, function, right)
         }
-        _ => false,
+        Expression::Math { fun: MathFunction::Min, arg, arg1: Some(other), arg2: _, arg3: _ } => {
+            all(arg, most) || all(other, most)
+        }
+        _ => all(value, most),
     }
 }
 
-fn is_harmless_constant(
+/// Whether all numbers of a constant are of a kind.
+fn all_are(
     module: &Module,
+    expressions: &Arena<Expression>,
     value: Value,
     is_number: &dyn Fn(Literal) -> bool,
 ) -> bool {
-    match &module.global_expressions[value] {
+    match &expressions[value] {
         Expression::Literal(literal) => is_number(*literal),
-        Expression::Splat { size: _, value } => is_harmless_constant(module, *value, is_number),
+        Expression::Constant(constant) => {
+            let init = module.constants[*constant].init;
+            all_are(module, &module.global_expressions, init, is_number)
+        }
+        Expression::Splat { size: _, value } => all_are(module, expressions, *value, is_number),
         Expression::Compose { ty: _, components } => {
-            components.iter().all(|one| is_harmless_constant(module, *one, is_number))
+            components.iter().all(|one| all_are(module, expressions, *one, is_number))
         }
         _ => false,
     }
@@ -276,6 +305,11 @@ impl Maker<'_> {
             }
             (Form::Defined(size, signed), Expression::Binary { op, left, right }) => {
                 let right = self.defined(size, signed, left, right);
+                self.add(Expression::Binary { op, left, right })
+            }
+            (Form::Masked(size, most), Expression::Binary { op, left, right }) => {
+                let bits = self.all(size, Literal::U32(most));
+                let right = self.both(BinaryOperator::And, right, bits);
                 self.add(Expression::Binary { op, left, right })
             }
             (Form::Clamped(size), expression) => {
@@ -358,5 +392,47 @@ impl Maker<'_> {
             condition = self.both(BinaryOperator::InclusiveOr, condition, overflows);
         }
         self.add(Expression::Select { condition, accept: one, reject: right })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Needs, with_plain_forms};
+    use lamplight_validate::info_for_some;
+    use naga::{BinaryOperator, Expression};
+
+    /// How many operands of shifts get a mask.
+    fn masks(expression: &str) -> usize {
+        let text = format!(
+            "const thirty = 30u; override two = 3u;
+            fn f(a: u32, b: u32, v: vec2u) -> vec2u {{ let s = {expression}; return vec2u(s); }}"
+        );
+        let module = naga::front::wgsl::parse_str(&text).unwrap();
+        let info = info_for_some(&module).unwrap();
+        let ands = |module: &naga::Module| {
+            let (_, function) = module.functions.iter().next().unwrap();
+            let is_and = |expression: &Expression| {
+                matches!(expression, Expression::Binary { op: BinaryOperator::And, .. })
+            };
+            function.expressions.iter().filter(|(_, one)| is_and(one)).count()
+        };
+        let needs = Needs { masked_shifts: true, ..Needs::default() };
+        let made = with_plain_forms(&module, &info, needs).unwrap();
+        made.map_or(0, |(made, _)| ands(&made) - ands(&module))
+    }
+
+    #[test]
+    fn shifts_that_may_be_too_wide_are_masked() {
+        let masked =
+            ["a << b", "a >> (b & 63u)", "a << (b % 33u)", "a << min(b, 32u)", "v << v.yx"];
+        let masked = masked.into_iter().chain(["a << two", "v >> vec2(b, 3u)", "1u << b"]);
+        for expression in masked {
+            assert_eq!(masks(expression), 1, "{expression}");
+        }
+        let known =
+            ["a << 31u", "a >> (b & 31u)", "a << (7u & b)", "a << (b % 32u)", "a << thirty"];
+        for expression in known.into_iter().chain(["v << min(v, vec2(31u))", "v >> vec2(3u, 4u)"]) {
+            assert_eq!(masks(expression), 0, "{expression}");
+        }
     }
 }

@@ -7,6 +7,7 @@ mod attributes;
 mod behaviour;
 mod constants;
 mod layout;
+mod lets;
 mod lookup;
 mod memory;
 mod names;
@@ -20,6 +21,7 @@ use std::ops::Range;
 
 pub use constants::fold;
 pub use layout::{NestedAlignment, nested_alignments};
+pub use lets::with_variables;
 pub use lookup::{Declared, Head, Lookup, Piece, Step};
 use syntax::Directive;
 pub use syntax::Severity;

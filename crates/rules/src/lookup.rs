@@ -285,7 +285,7 @@ fn keyword(kind: DeclarationKind) -> &'static str {
 }
 
 /// Every statement of a block, each before those within it.
-fn each_statement<'s, 't>(block: &'s Block<'t>, visit: &mut dyn FnMut(&'s Statement<'t>)) {
+pub fn each_statement<'s, 't>(block: &'s Block<'t>, visit: &mut dyn FnMut(&'s Statement<'t>)) {
     block.statements.iter().for_each(|statement| each_within(statement, visit));
 }
 

@@ -180,11 +180,29 @@ fn lacking_scalar(module: &naga::Module, capabilities: Capabilities) -> Option<S
 fn read_text(composed: &Composed) -> Result<Validated, Diagnostics> {
     on_large_stack(|| {
         guard(&composed.text, || {
-            parse_text(composed).and_then(|module| analyse_module(composed, module))
+            let read = |composed: &Composed| {
+                parse_text(composed).and_then(|module| analyse_module(composed, module))
+            };
+            read(composed).or_else(|errors| match with_variables(composed) {
+                Some(changed) => read(&changed).map_err(|_| errors),
+                None => Err(errors),
+            })
         })
     })
     .map_err(|error| vec![error])
     .and_then(|result| result)
+}
+
+/// A text in which naga computes nothing of what a `let` holds; `None` where that is the same text. It
+/// needs a large stack.
+fn with_variables(composed: &Composed) -> Option<Composed> {
+    match composed.language {
+        Language::Wesl => {
+            let text = lamplight_rules::with_variables(&composed.text)?;
+            Some(Composed { text, ..composed.clone() })
+        }
+        Language::Glsl => None,
+    }
 }
 
 /// Whether a text is small enough to be compiled without the sandbox.

@@ -1,7 +1,7 @@
 //! Compiles random programs, runs them on all executors, and compares what buffers hold with what
 //! they hold after the evaluator.
 
-use lamplight::bundle::Conventions;
+use lamplight::bundle::{Conventions, Target};
 use lamplight::diagnostic::{Diagnostic, codes};
 use lamplight::execute::dispatch::{ComputeForm, DispatchResult};
 use lamplight::execute::frame::Buffers;
@@ -69,7 +69,7 @@ impl Runner {
                 let Some(wanted) = &wanted[index] else { continue };
                 let (compiled, program) = (&compiled[index], &made[owner].1);
                 if let Some(what) = tally.compare(executor, compiled, program, wanted, result) {
-                    if name == "spirv" && is_right(second, compiled, program, wanted) {
+                    if is_right_elsewhere(second, executor, compiled, program, wanted) {
                         tally.drivers.entry(name).or_default().push(made[owner].0);
                         continue;
                     }
@@ -124,23 +124,28 @@ impl Runner {
     }
 }
 
-/// Whether the same words of SPIR-V give what the evaluator gives on another driver.
-fn is_right(
+/// Whether the same output gives what the evaluator gives on another driver: SPIR-V on SwiftShader, and
+/// GLSL there too, compiled by glslang.
+fn is_right_elsewhere(
     second: &mut Option<Opened>,
+    executor: &Opened,
     compiled: &Compiled,
     program: &Program,
     wanted: &Buffers,
 ) -> bool {
-    let opened = match second {
-        Some(opened) => opened,
-        None => match Opened::second("spirv") {
-            Ok(opened) => second.insert(opened),
-            Err(_) => return false,
-        },
+    let all = match executor.entry.name {
+        "spirv" => compiled.as_spirv(Target::SPIRV),
+        "glsl" => compiled.as_spirv(Target::GLSL450),
+        _ => return false,
     };
-    let result = opened.run(std::slice::from_ref(compiled)).pop().flatten();
+    let opened = match second {
+        Some(opened) => Ok(opened),
+        None => Opened::second("spirv").map(|opened| second.insert(opened)),
+    };
+    let (Ok(compiled), Ok(opened)) = (all, opened) else { return false };
+    let result = opened.run(std::slice::from_ref(&compiled)).pop().flatten();
     let ran = matches!(result, Some(Ok(_)));
-    ran && Tally::default().compare(opened, compiled, program, wanted, result).is_none()
+    ran && Tally::default().compare(opened, &compiled, program, wanted, result).is_none()
 }
 
 fn finding(name: &str, what: &str, output: &str) -> Finding {

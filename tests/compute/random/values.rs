@@ -200,8 +200,13 @@ impl Body<'_> {
             Ty::Vector(size, _) => (Ty::Vector(*size, Scalar::Uint), format!("vec{size}u(31u)")),
             _ => (UINT, "31u".to_owned()),
         };
-        let by = self.typed(&by, depth);
         let op = *self.random.pick(&["<<", ">>"]);
+        if self.random.chance(40) {
+            // A constant must be below 32; others count modulo 32.
+            let by = self.computed(&by, depth);
+            return format!("({a} {op} {by})");
+        }
+        let by = self.typed(&by, depth);
         format!("({a} {op} ({by} & {mask}))")
     }
 

@@ -106,6 +106,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         clamped_bytes: true,
         clamped_words: true,
         enclosed_bytes: true,
+        masked_shifts: true,
         ..Needs::default()
     };
     let counted = ends::with_counters(source)?;

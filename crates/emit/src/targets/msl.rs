@@ -47,7 +47,12 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let source = &source.with_analysed(counted.as_ref());
     let plainer = invariants::without_invariant_inputs(source.module, source.stage);
     let source = &EmitSource { module: plainer.as_ref().unwrap_or(source.module), ..*source };
-    let needs = Needs { enclosed_bytes: true, unpacked_choices: true, ..Needs::default() };
+    let needs = Needs {
+        enclosed_bytes: true,
+        unpacked_choices: true,
+        masked_shifts: true,
+        ..Needs::default()
+    };
     let plain = plain::with_plain_forms(source.module, source.info, needs)?;
     let source = &source.with_analysed(plain.as_ref());
     let options = Options {

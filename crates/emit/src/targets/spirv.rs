@@ -9,6 +9,7 @@ use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::slots::{Numbering, native_reflection};
 use crate::spirv::{HEADER_WORDS, SpirvInstruction, bytes, instructions, op};
+use crate::plain::{self, Needs};
 use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, descriptors, ends, lacks, sample_mask, short_storage, workgroups};
 use lamplight_validate::BINDING_ARRAYS;
 use lamplight_bundle::Target;
@@ -42,6 +43,9 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     }
     let counted = ends::with_counters(source)?;
     let source = &source.with_analysed(counted.as_ref());
+    let needs = Needs { masked_shifts: true, ..Needs::default() };
+    let plain = plain::with_plain_forms(source.module, source.info, needs)?;
+    let source = &source.with_analysed(plain.as_ref());
     let options = Options {
         lang_version: (1, 0),
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
