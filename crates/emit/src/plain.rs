@@ -149,11 +149,7 @@ fn own_form(
             op: BinaryOperator::ShiftLeft | BinaryOperator::ShiftRight,
             left: _,
             right,
-        } if needs.masked_shifts => {
-            let (size, Scalar { kind: _, width }) = shape(module, info, handle)?;
-            let most = u32::from(width) * 8 - 1;
-            (!is_within(module, function, right, most)).then_some(Form::Masked(size, most))
-        }
+        } if needs.masked_shifts => masked(module, (function, info), handle, right),
         Expression::As { expr, kind, convert: Some(4) } if needs.bounded_integers => {
             shape(module, info, expr)
                 .and_then(|(size, from)| Some(Form::Bounded(size, integer_bounds(from, kind)?)))
@@ -171,6 +167,18 @@ fn own_form(
         }
         _ => None,
     }
+}
+
+/// The form of a shift by a number that may be too large.
+fn masked(
+    module: &Module,
+    (function, info): (&Function, &FunctionInfo),
+    shift: Value,
+    by: Value,
+) -> Option<Form> {
+    let (size, Scalar { kind: _, width }) = shape(module, info, shift)?;
+    let most = u32::from(width) * 8 - 1;
+    (!is_within(module, function, by, most)).then_some(Form::Masked(size, most))
 }
 
 /// The members of values that are vectors of three and that a choice may give.
