@@ -27,7 +27,7 @@ const FUNCTION: &str = "lamplight_watch";
 const RESULT: &str = "lamplight_watched";
 
 /// An expression that is compiled for what a statement sees.
-pub struct Expression {
+struct Expression {
     program: Program,
     function: FunctionId,
     result: Variable,
@@ -90,12 +90,12 @@ impl Expression {
     ///
     /// # Errors
     /// What is wrong with it, in words.
-    pub fn new(subject: &Subject, visible: &[usize], text: &str) -> Result<Self, String> {
+    fn new(subject: &Subject, visible: &[usize], text: &str) -> Result<Self, String> {
         refuse(text)?;
         let variables = subject.program.variables();
         let is_named = |index: &&usize| {
-            variables.get(**index).is_some_and(|one| one.function.is_some() || is_own(one))
-                && variables.get(**index).is_some_and(|one| names(text, &one.name))
+            let own = variables.get(**index).filter(|one| one.function.is_some());
+            own.is_some_and(|one| names(text, &one.name))
         };
         let takes: Vec<usize> = visible.iter().filter(is_named).copied().collect();
         let source = format!("{}\n{}", subject.text(), function_text(subject, &takes, text)?);
@@ -116,7 +116,7 @@ impl Expression {
     ///
     /// # Errors
     /// Why it has none, in words.
-    pub fn value(&mut self, seen: &Seen<'_>) -> Result<Value, String> {
+    fn value(&mut self, seen: &Seen<'_>) -> Result<Value, String> {
         let variables = seen.subject.program.variables();
         let mut arguments = Vec::new();
         for variable in self.takes.iter().filter_map(|index| variables.get(*index)) {
@@ -124,21 +124,25 @@ impl Expression {
             let slots = (0..variable.shape.scalars()).map(slot);
             arguments.extend(slots.map(|at| seen.memory.get(at).copied().unwrap_or_default()));
         }
-        self.run(seen.subject, &arguments).map_err(|error| error.message)
+        self.run(seen, &arguments).map_err(|error| error.message)
     }
 
-    fn run(&mut self, subject: &Subject, arguments: &[Traced]) -> Result<Value, Error> {
+    fn run(&mut self, seen: &Seen<'_>, arguments: &[Traced]) -> Result<Value, Error> {
         let Self { program, function, result, takes: _, run } = self;
         let run = match run {
-            Some(run) => run,
+            Some(run) => {
+                run.again(program, arguments)?;
+                run
+            }
             None => {
                 let mut machine = Machine::<Traced>::new(program)?;
                 machine.loop_limit = TURNS;
-                machine.bind(subject.resources().clone())?;
+                machine.bind(seen.subject.resources().clone())?;
                 run.insert(machine.pace_call(*function, arguments)?)
             }
         };
-        run.again(program, arguments)?;
+        // What the text declares reads the variables of the module as they are now.
+        run.take_module(program, &seen.subject.program, seen.memory);
         run.finish(program, &mut Nobody)?;
         Ok(Value::read(&result.shape, result.place, run.memory()))
     }
@@ -154,11 +158,6 @@ impl Observer<Traced> for Nobody {
     fn see(&mut self, _: &mut Executed<'_, Traced>) -> Result<(), Error> {
         Ok(())
     }
-}
-
-/// Whether a variable of the module has a value of the run, which no buffer gives.
-fn is_own(variable: &Variable) -> bool {
-    variable.kind == VariableKind::Private
 }
 
 /// Whether an expression has a name as a word.

@@ -26,7 +26,7 @@ mod value;
 mod walk;
 mod why;
 
-pub use expression::{Expression, Expressions};
+pub use expression::Expressions;
 pub use json::{event_json, statement_place};
 pub use mark::Mark;
 pub use record::{Change, Event, Options, Outcome, Step, record};

@@ -299,3 +299,81 @@ fn a_long_loop_goes_back() {
     // Nobody is asked for less than some thousand instructions.
     assert_eq!(replay.forward(&mut |_| false, &|| true), Found::Interrupted);
 }
+
+/// What an expression calls reads inputs, globals and buffers as they are where the run stands.
+#[test]
+fn expressions_read_the_module() {
+    let text = "#version 330 core
+in vec3 at;
+out vec4 color;
+float scale = 1.0;
+float scaled(float x) { return x * scale + at.x; }
+void main() {
+    scale = 3.0;
+    color = vec4(scaled(2.0));
+}
+";
+    let (composed, sources) = composed("own.frag", text, Language::Glsl);
+    let composed = glsl_as_wgsl(&composed, Default::default()).unwrap();
+    let validated = validate(&composed).unwrap();
+    let text = SubjectText {
+        module: &validated.module,
+        text: &composed.text,
+        map: &composed.map,
+        sources: &sources,
+    };
+    let call = Call::Alone(vec![0.5, 0.0, 0.0]);
+    let subject = Subject::new(text, "main", call, Resources::default()).unwrap();
+    let mut replay = Replay::new(subject, 0.5).unwrap();
+    let mut expressions = lamplight_debug::Expressions::default();
+    let mut found = Vec::new();
+    for line in [7, 8] {
+        let mut is_there = |seen: &Seen<'_>| {
+            let at = seen.place.statement().and_then(|at| seen.subject.statements.get(at));
+            *seen.place.halt() == Halt::Statement && at.is_some_and(|at| at.line == line)
+        };
+        assert_eq!(replay.forward(&mut is_there, &|| false), Found::Yes);
+        let seen = replay.seen();
+        let frame = seen.place.frames().last().map(|one| (one.function, one.statement)).unwrap();
+        for text in ["scaled(2.0)", "scale", "at.x"] {
+            found.push(expressions.value(&seen, frame, text).unwrap().text());
+        }
+    }
+    assert_eq!(found, ["2.5", "1", "0.5", "6.5", "3", "0.5"]);
+}
+
+/// A buffer that the run has written has its new content in what an expression calls.
+#[test]
+fn expressions_read_buffers() {
+    let text = "@group(0) @binding(0) var<storage, read_write> all: array<f32>;
+fn second() -> f32 { return all[1]; }
+fn f(x: f32) -> f32 {
+    all[1] = x;
+    return second();
+}
+";
+    let (composed, sources) = composed("own.wesl", text, Language::Wesl);
+    let validated = validate(&composed).unwrap();
+    let text = SubjectText {
+        module: &validated.module,
+        text: &composed.text,
+        map: &composed.map,
+        sources: &sources,
+    };
+    let mut resources = Resources::default();
+    let bytes = [1.0_f32, 2.0, 3.0].iter().flat_map(|one| one.to_le_bytes()).collect();
+    resources.buffers.insert((0, 0), bytes);
+    let subject = Subject::new(text, "f", Call::Alone(vec![9.0]), resources).unwrap();
+    let mut replay = Replay::new(subject, 0.5).unwrap();
+    let mut expressions = lamplight_debug::Expressions::default();
+    let mut found = Vec::new();
+    for _ in 0..2 {
+        replay.forward(&mut |seen| *seen.place.halt() == Halt::Statement, &|| false);
+        let seen = replay.seen();
+        let frame = seen.place.frames().last().map(|one| (one.function, one.statement)).unwrap();
+        for text in ["second()", "all[1]", "all[2] + f32(arrayLength(&all))"] {
+            found.push(expressions.value(&seen, frame, text).unwrap().text());
+        }
+    }
+    assert_eq!(found, ["2", "2", "6", "9", "9", "6"]);
+}

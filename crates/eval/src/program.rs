@@ -5,7 +5,9 @@ use super::error::Error;
 use super::layout::SlotKind;
 use super::lower;
 use super::names::Variable;
+use super::number::Number;
 use naga::{Handle, Span, Type, UniqueArena};
+use std::ops::Range;
 
 /// A module ready to run on any [`super::Number`]. It borrows nothing and may be shared between
 /// threads; each thread has its own [`super::Machine`].
@@ -206,6 +208,22 @@ impl Program {
         self.code.iter().enumerate().map(begins).collect()
     }
 
+    /// The instruction that runs once the declaration of a variable of a function is reached: the first
+    /// one of a statement there or behind it in the text. `None` if the text has no place for it.
+    pub fn reached_by(&self, variable: &Variable) -> Option<u32> {
+        let (function, start) = (variable.function?, variable.span.to_range()?.start);
+        let first = self.signature(function)?.entry;
+        let is_own = |pc: &u32| self.function_around(*pc) == Some(function);
+        let is_behind = |pc: &u32| {
+            let span = self.spans.get(*pc as usize).and_then(|span| span.to_range());
+            span.is_some_and(|span| span.start >= start)
+        };
+        let begins = self.beginnings();
+        let begins = |pc: &u32| begins.get(*pc as usize).is_some_and(|begins| *begins);
+        let own = (first..self.code.len() as u32).take_while(is_own);
+        { own }.find(|pc| begins(pc) && is_behind(pc))
+    }
+
     /// The function whose instructions begin at this one.
     pub(super) fn function_at(&self, entry: u32) -> Option<FunctionId> {
         // One that could not be lowered has no instructions, so it shares its first with the next.
@@ -270,6 +288,29 @@ impl Program {
             GlobalRole::Workgroup if is_alone => Some((range(global.slot, global.slots), None)),
             _ => None,
         })
+    }
+
+    /// The slots of each variable of the module that a run can change, by its name. Those of a buffer
+    /// of runtime size are where the memory says.
+    pub(super) fn module_slots<'p, N: Number>(
+        &'p self,
+        memory: &[N],
+    ) -> Vec<(&'p str, Range<usize>)> {
+        let word = |slot: u32| memory.get(slot as usize).map_or(0, |slot| slot.word()) as usize;
+        let slots = |global: &Global| match global.role {
+            GlobalRole::Private(_) | GlobalRole::Workgroup | GlobalRole::Buffer => {
+                let first = global.slot as usize;
+                Some(first..first + global.slots as usize)
+            }
+            GlobalRole::Runtime { address, count, element } => {
+                let (first, element) = (word(address), element as usize);
+                let fixed = (global.slots as usize).saturating_sub(element);
+                Some(first..first + fixed + word(count) * element)
+            }
+            GlobalRole::Image | GlobalRole::Sampler => None,
+        };
+        let named = |global: &'p Global| Some((global.name.as_str(), slots(global)?));
+        self.globals.iter().filter_map(named).collect()
     }
 
     /// The slots of the variables that the invocations of a workgroup share.

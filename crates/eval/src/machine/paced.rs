@@ -2,6 +2,7 @@
 //!
 //! A copy goes on as the run would, so whoever keeps some can go back without running all again.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::observe::{Executed, Observer, action_of};
@@ -118,6 +119,21 @@ impl<N: Number> Paced<N> {
     /// The memory of the observed lane.
     pub fn memory(&self) -> &[N] {
         self.lane().map_or(&[], |lane| &lane.memory)
+    }
+
+    /// Gives the variables of the module, and buffers, the values that variables of these names have in
+    /// the memory of a run of another program.
+    pub fn take_module(&mut self, program: &Program, other: &Program, memory: &[N]) {
+        let from: BTreeMap<_, _> = other.module_slots(memory).into_iter().collect();
+        for lane in &mut self.state.lanes {
+            for (name, slots) in program.module_slots(&lane.memory) {
+                let given = from.get(name).and_then(|from| memory.get(from.clone()));
+                let own = lane.memory.get_mut(slots);
+                for (own, given) in own.into_iter().flatten().zip(given.into_iter().flatten()) {
+                    *own = *given;
+                }
+            }
+        }
     }
 
     /// The flattened result of the observed lane, once it has returned.
