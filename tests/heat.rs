@@ -72,6 +72,53 @@ void main() {
 }
 ";
 
+const BRANCHES: &str = "fn twice(given: f32) -> f32 {
+    return 2.0 * given;
+}
+
+@fragment
+fn main(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    var sum = 0.25;
+    if at.x > 8.0 {
+        var first: f32;
+        let never = 0.0;
+        sum += first + never + twice(at.x);
+    } else {
+        var second = 2.0;
+        if at.y > 4.0 {
+            second = 3.0;
+        }
+        sum += second;
+    }
+    if at.y < 2.0 {
+        return vec4f(sum);
+    }
+    var last = 0.5;
+    return vec4f(sum + last);
+}
+";
+
+const GLSL_BRANCH: &str = "#version 330 core
+out vec4 color;
+void main() {
+    float sum = 0.25;
+    if (gl_FragCoord.x > 8.0) {
+        float inside = 0.0;
+        sum += inside;
+    }
+    color = vec4(sum);
+}
+";
+
+const DOMAIN: &str = "@fragment
+fn main(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    let zero = at.x - at.x;
+    let below = select(1.0, -1.0, floor(at.y) == 3.0);
+    let root = sqrt(below);
+    return vec4f(atan2(zero, zero), pow(zero, zero), log(zero), max(root, 0.0));
+}
+";
+
 const ROWS: &[Row] = &[
     Row {
         name: "a_value",
@@ -124,6 +171,56 @@ const ROWS: &[Row] = &[
         text: WGSL,
         show: "nan",
         expected: |_, y| Some(if y == 3 { 2.0 } else { 0.0 }),
+    },
+    Row {
+        name: "a_variable_in_a_branch",
+        file: "own.wesl",
+        text: BRANCHES,
+        show: "first",
+        expected: |x, _| (x >= 8).then_some(0.0),
+    },
+    Row {
+        name: "a_variable_in_the_other_branch",
+        file: "own.wesl",
+        text: BRANCHES,
+        show: "second",
+        expected: |x, y| (x < 8).then_some(if y < 4 { 2.0 } else { 3.0 }),
+    },
+    Row {
+        name: "a_variable_behind_a_return",
+        file: "own.wesl",
+        text: BRANCHES,
+        show: "last",
+        expected: |_, y| (y >= 2).then_some(0.5),
+    },
+    Row {
+        name: "a_constant_in_a_branch",
+        file: "own.wesl",
+        text: BRANCHES,
+        show: "never",
+        expected: |x, _| (x >= 8).then_some(0.0),
+    },
+    Row {
+        name: "a_parameter",
+        file: "own.wesl",
+        text: BRANCHES,
+        show: "given",
+        expected: |x, _| (x >= 8).then_some(x as f32 + 0.5),
+    },
+    Row {
+        name: "a_variable_in_a_branch_of_glsl",
+        file: "own.frag",
+        text: GLSL_BRANCH,
+        show: "inside",
+        expected: |x, _| (x >= 8).then_some(0.0),
+    },
+    // `atan2(0, 0)` is no NaN, and the root of -1 is one, which is not returned.
+    Row {
+        name: "nan_outside_of_a_domain",
+        file: "own.wesl",
+        text: DOMAIN,
+        show: "nan",
+        expected: |_, y| Some(if y == 3 { 1.0 } else { 0.0 }),
     },
     // OpenGL's rows begin below.
     Row {

@@ -25,11 +25,11 @@ pub struct HeatMap {
 /// The numbers of a heat map in short.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
-    /// The smallest finite number, and the largest.
+    /// The smallest finite number.
     pub lowest: f64,
     /// The largest finite number.
     pub highest: f64,
-    /// How many pixels have a value, and how many of these the smallest and the largest one.
+    /// How many pixels have a value.
     pub pixels: usize,
     /// How many have the largest value.
     pub at_highest: usize,
@@ -141,6 +141,7 @@ impl HeatMap {
     /// The picture, with the scale below it.
     pub fn picture(&self, name: &str) -> Picture {
         let ([width, height], scale) = (self.size, self.scale());
+        let reach = self.reach(&scale);
         let mut picture = Picture::filled(width, height + LEGEND, NOTHING);
         for y in 0..height {
             for x in 0..width {
@@ -149,33 +150,28 @@ impl HeatMap {
                     None => {}
                     Some(Measured(None)) => picture.set([x, y], MISSING),
                     Some(Measured(Some(value))) => {
-                        picture.set([x, y], self.color(value, &scale));
+                        picture.set([x, y], self.color(value, reach));
                     }
                 }
             }
         }
-        self.legend(&mut picture, name, &scale);
+        self.legend(&mut picture, name, reach);
         picture
     }
 
-    /// Where a number is between the lowest and the highest one.
-    fn share(&self, number: f64, scale: &Scale) -> f64 {
-        let (lowest, highest) = (scale.lowest, scale.highest);
-        if self.is_logarithmic {
-            let floor = self.floor(scale).log10();
-            let span = highest.log10() - floor;
-            return if number > 0.0 && span > 0.0 { (number.log10() - floor) / span } else { 0.0 };
-        }
-        if highest > lowest { (number - lowest) / (highest - lowest) } else { 0.0 }
+    /// Where the colours begin and end: a scale of powers of ten begins at the smallest number above 0.
+    fn reach(&self, scale: &Scale) -> Reach {
+        let (is_logarithmic, to) = (self.is_logarithmic, scale.highest);
+        let from = if is_logarithmic {
+            let above = self.numbers().filter(|number| *number > 0.0 && number.is_finite());
+            above.fold(f64::INFINITY, f64::min).min(to.max(f64::MIN_POSITIVE))
+        } else {
+            scale.lowest
+        };
+        Reach { from, to, is_logarithmic }
     }
 
-    /// The smallest number above 0, where a scale of powers of ten begins.
-    fn floor(&self, scale: &Scale) -> f64 {
-        let above = self.numbers().filter(|number| *number > 0.0 && number.is_finite());
-        above.fold(f64::INFINITY, f64::min).min(scale.highest.max(f64::MIN_POSITIVE))
-    }
-
-    fn color(&self, value: [f32; 3], scale: &Scale) -> [u8; 3] {
+    fn color(&self, value: [f32; 3], reach: Reach) -> [u8; 3] {
         let parts = &value[..self.components.min(3)];
         if parts.iter().any(|part| part.is_nan()) {
             return NAN;
@@ -183,7 +179,7 @@ impl HeatMap {
         if parts.iter().any(|part| part.is_infinite()) {
             return INFINITE;
         }
-        let share = |part: &f32| self.share(f64::from(*part), scale).clamp(0.0, 1.0);
+        let share = |part: &f32| reach.share(f64::from(*part)).clamp(0.0, 1.0);
         if let [one] = parts {
             return ramp(share(one));
         }
@@ -194,7 +190,7 @@ impl HeatMap {
         color
     }
 
-    fn legend(&self, picture: &mut Picture, name: &str, scale: &Scale) {
+    fn legend(&self, picture: &mut Picture, name: &str, reach: Reach) {
         let [width, top] = self.size;
         let last = f64::from(width.saturating_sub(1).max(1));
         for x in 0..width {
@@ -203,8 +199,7 @@ impl HeatMap {
             let color = if self.components == 1 { ramp(share) } else { grey };
             (top + 4..top + 16).for_each(|y| picture.set([x, y], color));
         }
-        let from = if self.is_logarithmic { self.floor(scale) } else { scale.lowest };
-        let [from, to] = [from, scale.highest].map(short);
+        let [from, to] = [reach.from, reach.to].map(short);
         // A letter is ten pixels wide.
         let room = |text: &str| 10 * text.chars().count() as u32;
         write_label(picture, &from, [2, top + 20], width.saturating_sub(2));
@@ -216,6 +211,26 @@ impl HeatMap {
                 write_label(picture, name, [middle, top + 20], width - middle);
             }
         }
+    }
+}
+
+/// Where the colours begin and end.
+#[derive(Debug, Clone, Copy)]
+struct Reach {
+    from: f64,
+    to: f64,
+    is_logarithmic: bool,
+}
+
+impl Reach {
+    /// Where a number is on the way.
+    fn share(self, number: f64) -> f64 {
+        let Self { from, to, is_logarithmic } = self;
+        if is_logarithmic {
+            let (floor, span) = (from.log10(), to.log10() - from.log10());
+            return if number > 0.0 && span > 0.0 { (number.log10() - floor) / span } else { 0.0 };
+        }
+        if to > from { (number - from) / (to - from) } else { 0.0 }
     }
 }
 
@@ -260,6 +275,29 @@ mod tests {
         assert_eq!(picture.pixel([0, 0]), ramp(0.0));
         assert_eq!(picture.pixel([1, 0]), ramp(1.0));
         assert_eq!((picture.pixel([2, 0]), picture.pixel([3, 0])), (NAN, INFINITE));
+    }
+
+    /// From the smallest number above 0, each factor is a step of one length.
+    #[test]
+    fn powers() {
+        let values = [0.0, 20.0_f32.exp2().recip(), 16.0_f32.exp2().recip(), 1.0];
+        let heat =
+            HeatMap { is_logarithmic: true, ..map(&values.map(|value| Some([value; 3])), 1) };
+        let picture = heat.picture("error");
+        let found = [0, 1, 2, 3].map(|x| picture.pixel([x, 0]));
+        // The third has gone 4 of 20 steps: a fifth of the way, where the second colour is.
+        assert_eq!(found, [[8, 10, 40], [8, 10, 40], [40, 40, 140], [250, 245, 170]]);
+    }
+
+    /// A map of as many numbers as a picture has pixels, each of which has another one.
+    #[test]
+    fn a_large_map() {
+        let side = 512;
+        let values = (1..=side * side).map(|at| Some(Measured(Some([at as f32; 3])))).collect();
+        let heat = HeatMap { size: [side; 2], values, components: 1, is_logarithmic: true };
+        let picture = heat.picture("error");
+        assert_eq!(picture.pixel([0, 0]), ramp(0.0));
+        assert_eq!(picture.pixel([side - 1, side - 1]), ramp(1.0));
     }
 
     #[test]

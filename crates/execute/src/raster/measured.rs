@@ -84,8 +84,20 @@ struct Asked {
     first: u32,
     count: u32,
     kind: SlotKind,
-    /// Whether it has its value before the stage runs.
-    is_given: bool,
+    reached: Reached,
+}
+
+/// When a variable has a value.
+#[derive(Debug, Clone, Copy)]
+enum Reached {
+    /// Before the stage runs.
+    Given,
+    /// Once this function is called.
+    Called(FunctionId),
+    /// Once this instruction runs, which follows the declaration.
+    At(u32),
+    /// Once it is written.
+    Written,
 }
 
 impl<'a> Measuring<'a> {
@@ -149,7 +161,8 @@ impl<'a> Measuring<'a> {
         };
         let all = quad.arguments.each_ref().map(|words| slots(words));
         let mut run = machine.pace_quad(self.function, all.each_ref().map(Vec::as_slice), lane)?;
-        let mut counter = Counter { asked: self.asked, ..Counter::default() };
+        let is_reached = self.asked.is_some_and(|one| matches!(one.reached, Reached::Given));
+        let mut counter = Counter { asked: self.asked, is_reached, branches: 0, has_nan: false };
         run.finish(&self.program, &mut counter)?;
         if run.is_discarded() {
             return Ok(None);
@@ -188,9 +201,7 @@ impl<'a> Measuring<'a> {
                     }
                 };
                 let value = [0, 1, 2].map(scalar);
-                let has_value =
-                    asked.is_given || counter.is_written || value.iter().any(|part| *part != 0.0);
-                Measured(has_value.then_some(value))
+                Measured(counter.is_reached.then_some(value))
             }
         }
     }
@@ -254,12 +265,12 @@ impl Measuring<'_> {
 }
 
 /// Counts what a fragment does.
-#[derive(Default)]
 struct Counter {
     branches: u64,
     has_nan: bool,
     asked: Option<Asked>,
-    is_written: bool,
+    /// Whether the variable that is asked for has a value.
+    is_reached: bool,
 }
 
 impl<N: Number> Observer<N> for Counter {
@@ -270,17 +281,35 @@ impl<N: Number> Observer<N> for Counter {
     fn see(&mut self, seen: &mut Executed<'_, N>) -> Result<(), Error> {
         let is_branch = matches!(seen.action, Action::Branch { .. } | Action::Switch { .. });
         self.branches += u64::from(is_branch);
-        self.has_nan |= seen
-            .found
-            .iter()
-            .any(|kind| matches!(kind, FindingKind::NotANumber | FindingKind::Domain));
-        if let Some(asked) = self.asked.filter(|_| !self.is_written) {
-            let range: SlotRange = seen.written();
-            let first = asked.place.slot(asked.first, seen.memory);
-            self.is_written = range.start < first + asked.count && first < range.end;
+        self.has_nan |= seen.found.contains(&FindingKind::NotANumber) || leaves_domain(seen);
+        if let Some(asked) = self.asked.filter(|_| !self.is_reached) {
+            self.is_reached = match asked.reached {
+                Reached::Given => true,
+                Reached::Called(own) => seen.action == Action::Call { function: own },
+                Reached::At(pc) => seen.pc == pc,
+                Reached::Written => {
+                    let range: SlotRange = seen.written();
+                    let first = asked.place.slot(asked.first, seen.memory);
+                    range.start < first + asked.count && first < range.end
+                }
+            };
         }
         Ok(())
     }
+}
+
+/// Whether a function got finite arguments outside of its domain, and gave NaN. Some give a number.
+fn leaves_domain<N: Number>(seen: &Executed<'_, N>) -> bool {
+    if seen.domain().is_none() {
+        return false;
+    }
+    let slots = |range: SlotRange| {
+        let range = range.start as usize..range.end as usize;
+        seen.memory.get(range).unwrap_or_default().iter().map(|slot| slot.value())
+    };
+    let mut is_finite = true;
+    seen.read(&mut |range| is_finite &= slots(range).all(f64::is_finite));
+    is_finite && slots(seen.written()).any(f64::is_nan)
 }
 
 /// The variable that a name such as `n`, `n.x` or `lamp.position` means: in the stage, else in any
@@ -301,9 +330,13 @@ fn find(program: &Program, stage: FunctionId, asked: &str) -> Result<Asked, Diag
             return Err(refused(format!("`{asked}` is no number and no vector"), help));
         }
     };
-    let is_given = variable.function.is_none()
-        || (variable.function == Some(stage) && variable.kind == VariableKind::Parameter);
-    Ok(Asked { place: variable.place, first, count, kind, is_given })
+    let reached = match (variable.function, variable.kind) {
+        (None, _) => Reached::Given,
+        (Some(function), VariableKind::Parameter) if function == stage => Reached::Given,
+        (Some(function), VariableKind::Parameter) => Reached::Called(function),
+        _ => program.reached_by(variable).map_or(Reached::Written, Reached::At),
+    };
+    Ok(Asked { place: variable.place, first, count, kind, reached })
 }
 
 fn refused(message: String, help: &str) -> Diagnostic {
