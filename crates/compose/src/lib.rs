@@ -142,8 +142,12 @@ pub fn compose(
     settings: &Settings,
     options: &Options,
 ) -> Result<Composed, Diagnostics> {
-    match graph {
+    let mut composed = match graph {
         Graph::Wesl(graph) => wesl::compose(graph, settings, options),
         Graph::Glsl(graph) => glsl::compose(graph, settings, options),
+    }?;
+    if !composed.map.is_empty() {
+        composed.map.imports = graph.imports();
     }
+    Ok(composed)
 }

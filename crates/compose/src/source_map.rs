@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use lamplight_diagnostic::source::Span;
+use lamplight_diagnostic::source::{SourceId, Span};
 use lamplight_diagnostic::{Diagnostic, Label};
 
 /// A run of output bytes copied from one place, or standing in for it.
@@ -20,9 +20,16 @@ pub struct Segment {
 #[derive(Debug, Clone, Default)]
 pub struct SourceMap {
     segments: Vec<Segment>,
+    /// For each text, the import or include that led to it first. The root has none.
+    pub imports: Vec<(SourceId, Span)>,
 }
 
 impl SourceMap {
+    /// A map without segments of texts that were read like this.
+    pub fn of_imports(imports: Vec<(SourceId, Span)>) -> Self {
+        Self { segments: Vec::new(), imports }
+    }
+
     /// Appends a segment; starts must not decrease.
     pub fn push(&mut self, segment: Segment) {
         debug_assert!(self.segments.last().is_none_or(|last| last.start <= segment.start));
@@ -66,12 +73,7 @@ impl SourceMap {
 
     /// Where the last byte before `end` came from, if in the same source at or after segment
     /// `first`.
-    fn end(
-        &self,
-        first: usize,
-        end: usize,
-        source: lamplight_diagnostic::source::SourceId,
-    ) -> Option<u32> {
+    fn end(&self, first: usize, end: usize, source: SourceId) -> Option<u32> {
         let last = self
             .segments
             .partition_point(|segment| (segment.start as usize) < end)
@@ -91,6 +93,9 @@ impl SourceMap {
             let changed = change(span);
             segment.verbatim &= changed == span;
             segment.span = Some(changed);
+        }
+        for (_, span) in &mut self.imports {
+            *span = change(*span);
         }
     }
 

@@ -94,7 +94,7 @@ pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnos
         return Err(vec![Diagnostic::error(codes::GLSL_ERROR, message)]);
     };
     let Written { text, map, facts } = translate_glsl(composed, stage, clip)?;
-    let mut places = SourceMap::default();
+    let mut places = SourceMap::of_imports(composed.map.imports.clone());
     for segment in map {
         let range = segment.at.range();
         let span = if range.is_empty() { None } else { composed.map.lookup(range) };

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use lamplight_bundle::Language;
 use lamplight_diagnostic::Diagnostics;
-use lamplight_diagnostic::source::{Embedded, SourceSet};
+use lamplight_diagnostic::source::{Embedded, SourceId, SourceSet, Span};
 use lamplight_permute::Settings;
 
 /// All that a root file may reach, ready to be composed any number of times.
@@ -31,6 +31,14 @@ impl Graph {
             Self::Glsl(graph) => graph.traced(diagnostic),
         };
         diagnostics.into_iter().map(one).collect()
+    }
+
+    /// For each text, the import or include that led to it first. The root has none.
+    pub fn imports(&self) -> Vec<(SourceId, Span)> {
+        match self {
+            Self::Wesl(graph) => graph.imports().collect(),
+            Self::Glsl(graph) => graph.includes().collect(),
+        }
     }
 
     /// The warnings that the author can mend: those that stand in files of the root package.

@@ -42,8 +42,8 @@ impl Graph {
     pub fn trace(&self, source: SourceId) -> Vec<String> {
         let mut notes = Vec::new();
         let mut at = self.modules.iter().position(|module| module.source == source);
-        while let Some((includer, line)) = at.filter(|at| *at > 0).and_then(|at| self.includer(at))
-        {
+        while let Some((includer, span)) = at.and_then(|at| self.includer(at)) {
+            let line = self.modules[includer].line(span.start);
             notes.push(format!("included from {}:{line}", self.paths[includer]));
             at = Some(includer);
         }
@@ -68,15 +68,20 @@ impl Graph {
             .is_some_and(|module| self.packages[module] == ROOT)
     }
 
-    /// The first file that includes a module, and the line of the `#include`. That file was read
+    /// For each file but the root, the `#include` that led to it first.
+    pub fn includes(&self) -> impl Iterator<Item = (SourceId, Span)> {
+        let found = |(at, module): (usize, &Module)| Some((module.source, self.includer(at)?.1));
+        self.modules.iter().enumerate().filter_map(found)
+    }
+
+    /// The first file that includes a module, and the place of the `#include`. That file was read
     /// before the module, so following includers always ends.
-    fn includer(&self, module: usize) -> Option<(usize, usize)> {
+    fn includer(&self, module: usize) -> Option<(usize, Span)> {
         self.targets[..module].iter().enumerate().find_map(|(includer, targets)| {
             let index = targets.iter().position(
                 |target| matches!(target, IncludeTarget::Module(found) if *found == module),
             )?;
-            let span = self.modules[includer].includes[index].span;
-            Some((includer, self.modules[includer].line(span.start)))
+            Some((includer, self.modules[includer].includes[index].span))
         })
     }
 }

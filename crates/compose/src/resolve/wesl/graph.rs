@@ -40,6 +40,15 @@ impl Graph {
         self.importers(source).map(|(span, _)| span).collect()
     }
 
+    /// For each file but that of the root module, the import that led to it first.
+    pub fn imports(&self) -> impl Iterator<Item = (SourceId, Span)> {
+        let found = |(source, node): (&SourceId, &u32)| {
+            let importer = self.nodes[*node as usize].importer.as_ref()?;
+            Some((*source, importer.span))
+        };
+        self.by_source.iter().filter_map(found)
+    }
+
     /// [`Self::chain`] as notes: `imported by main.wesl:3:8`.
     pub fn trace(&self, source: SourceId) -> Vec<String> {
         self.importers(source).map(|(_, note)| note.to_owned()).collect()
