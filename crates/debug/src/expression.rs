@@ -5,10 +5,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use lamplight_diagnostic::nearest_name;
 use lamplight_eval::{
-    Error, Executed, FunctionId, Machine, Observer, Paced, Program, Shape, Traced, Variable,
-    VariableKind, VariablePlace,
+    Error, Executed, FunctionId, Machine, Observer, Paced, Program, Shape, SlotKind, Traced,
+    Variable, VariableKind, VariablePlace,
 };
+use lamplight_syntax::words::has_word;
 
 use crate::replay::Seen;
 use crate::subject::Subject;
@@ -57,17 +59,39 @@ impl Expressions {
         self.compiled(seen.subject, frame, text)?.value(seen)
     }
 
-    /// Says what is wrong with an expression, before there are values.
+    /// Whether a condition holds in a function that is at a statement.
+    ///
+    /// # Errors
+    /// Why it has no value, in words.
+    pub fn holds(
+        &mut self,
+        seen: &Seen<'_>,
+        frame: (FunctionId, Option<StatementId>),
+        text: &str,
+    ) -> Result<bool, String> {
+        self.check_condition(seen.subject, frame, text)?;
+        let value = self.value(seen, frame, text)?;
+        Ok(value.scalars.first().is_some_and(|one| one.word() != 0))
+    }
+
+    /// Says what is wrong with a condition, before there are values.
     ///
     /// # Errors
     /// What is wrong with it, in words.
-    pub fn check(
+    pub fn check_condition(
         &mut self,
         subject: &Subject,
         frame: (FunctionId, Option<StatementId>),
         text: &str,
     ) -> Result<(), String> {
-        self.compiled(subject, frame, text).map(|_| ())
+        let shape = &self.compiled(subject, frame, text)?.result.shape;
+        if *shape == Shape::Scalar(SlotKind::Bool) {
+            return Ok(());
+        }
+        let found = subject.type_name(shape).unwrap_or_else(|| "a structure".to_owned());
+        Err(format!(
+            "`{text}` is no condition, but {found}: a condition is `bool`, such as `i == 3`"
+        ))
     }
 
     fn compiled(
@@ -95,13 +119,15 @@ impl Expression {
         let variables = subject.program.variables();
         let is_named = |index: &&usize| {
             let own = variables.get(**index).filter(|one| one.function.is_some());
-            own.is_some_and(|one| names(text, &one.name))
+            own.is_some_and(|one| has_word(text, &one.name))
         };
         let takes: Vec<usize> = visible.iter().filter(is_named).copied().collect();
         let source = format!("{}\n{}", subject.text(), function_text(subject, &takes, text)?);
         let wrong = |words: String| words.lines().next().unwrap_or_default().to_owned();
-        let module = naga::front::wgsl::parse_str(&source)
-            .map_err(|error| wrong(error.message().to_owned()))?;
+        let module = naga::front::wgsl::parse_str(&source).map_err(|error| {
+            let words = wrong(error.message().to_owned());
+            unknown(subject, visible, &words).unwrap_or(words)
+        })?;
         let (flags, all) = (naga::valid::ValidationFlags::all(), naga::valid::Capabilities::all());
         let info = naga::valid::Validator::new(flags, all).validate(&module);
         let info = info.map_err(|error| wrong(innermost(error.as_inner())))?;
@@ -160,12 +186,6 @@ impl Observer<Traced> for Nobody {
     }
 }
 
-/// Whether an expression has a name as a word.
-fn names(text: &str, name: &str) -> bool {
-    let is_word = |c: char| c.is_alphanumeric() || c == '_';
-    text.split(|c| !is_word(c)).any(|word| word == name)
-}
-
 /// The function whose variable has the value of an expression.
 fn function_text(subject: &Subject, takes: &[usize], text: &str) -> Result<String, String> {
     let (mut parameters, mut before) = (Vec::new(), String::new());
@@ -197,7 +217,7 @@ fn members_text(subject: &Subject, takes: &[usize], text: &str) -> String {
     for buffer in variables.iter().filter(|one| one.kind == VariableKind::Buffer) {
         let Shape::Struct(members) = &buffer.shape else { continue };
         for (name, _) in members {
-            if names(text, name) && known.insert(name) {
+            if has_word(text, name) && known.insert(name) {
                 before += &format!("let {name} = {}.{name};\n", buffer.name);
             }
         }
@@ -231,6 +251,16 @@ fn refuse(text: &str) -> Result<(), String> {
         true => Err(format!("an expression has at most {DEEPEST} brackets in each other")),
         false => Ok(()),
     }
+}
+
+/// The words for a name that naga does not know, with the nearest that is seen.
+fn unknown(subject: &Subject, visible: &[usize], words: &str) -> Option<String> {
+    let name = words.strip_prefix("no definition in scope for identifier: `")?.strip_suffix('`')?;
+    let variables = visible.iter().filter_map(|index| subject.program.variables().get(*index));
+    let functions = subject.program.functions().map(|(_, function)| function.name.as_str());
+    let seen = variables.map(|variable| variable.name.as_str()).chain(functions);
+    let help = nearest_name(name, seen).map(|near| format!(": did you mean `{near}`?"));
+    Some(format!("nothing is named `{name}` at this line{}", help.unwrap_or_default()))
 }
 
 /// The cause of an error.

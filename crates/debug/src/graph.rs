@@ -5,8 +5,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use lamplight_eval::{
-    Action, Error, Executed, FunctionId, Observer, Shape, SlotRange, Variable, VariableKind,
-    VariablePlace,
+    Action, Error, Executed, FunctionId, Observer, Shape, ShapePart, SlotRange, Variable,
+    VariableKind, VariablePlace,
 };
 
 use crate::record::stored_variables;
@@ -274,30 +274,12 @@ impl Node {
     }
 }
 
-/// The scalars and vectors of a variable: name, first slot and how many.
+/// The scalars, vectors and matrices of a variable: name, first slot and how many scalars.
 fn leaves(variable: &Variable, slot: u32) -> Vec<(String, u32, u32)> {
-    let mut found = Vec::new();
-    collect(&variable.name, &variable.shape, slot, &mut found);
-    found
-}
-
-fn collect(name: &str, shape: &Shape, slot: u32, to: &mut Vec<(String, u32, u32)>) {
-    let mut at = slot;
-    match shape {
-        Shape::Scalar(_) | Shape::Vector(..) | Shape::Matrix { .. } => {
-            to.push((name.to_owned(), slot, shape.scalars()));
-        }
-        Shape::Array(count, element) => {
-            for index in 0..*count {
-                collect(&format!("{name}[{index}]"), element, at, to);
-                at += element.scalars();
-            }
-        }
-        Shape::Struct(members) => {
-            for (member, shape) in members {
-                collect(&format!("{name}.{member}"), shape, at, to);
-                at += shape.scalars();
-            }
-        }
-    }
+    let is_whole = |shape: &Shape| !matches!(shape, Shape::Array(..) | Shape::Struct(_));
+    let parts = variable.shape.leaves(usize::MAX, is_whole).into_iter();
+    let leaf = |ShapePart { name, first, shape }: ShapePart| {
+        (format!("{}{name}", variable.name), slot + first, shape.scalars())
+    };
+    parts.map(leaf).collect()
 }

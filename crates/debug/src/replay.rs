@@ -14,11 +14,12 @@ use crate::subject::Subject;
 use crate::text::StatementId;
 use crate::walk::{Frame, Walk};
 
-/// About how many bytes all copies of a run may need.
+/// How many bytes all copies of a run may need. Beside them are the run itself, and one that goes from
+/// a copy to the place that is looked for.
 const BYTES: usize = 96 << 20;
-/// The most copies of each kind, and the fewest.
+/// The most copies of each kind. A run with so much memory that no copy is allowed begins again for
+/// each step back.
 const MOST: usize = 96;
-const FEWEST: usize = 4;
 /// How many halts are at least between two copies.
 const APART: u64 = 64;
 /// How many instructions run until somebody is asked whether to go on.
@@ -159,7 +160,9 @@ pub struct Replay {
     apart: u64,
     /// Copies over the part that was run again last.
     near: BTreeMap<u64, Moment>,
+    /// The most copies of each kind.
     most: usize,
+    share: f64,
 }
 
 impl Replay {
@@ -169,22 +172,10 @@ impl Replay {
     /// # Errors
     /// The evaluator's, about what the function reads.
     pub fn new(subject: Subject, share: f64) -> Result<Self, Error> {
-        let place = Place {
-            walk: Walk::new(subject.function()),
-            clock: 0,
-            halt: Halt::Start,
-            runs: vec![0; subject.statements.all().len()],
-            marks: Vec::new(),
-            notice: Notice::new(share),
-            is_started: false,
-            returned: None,
-            shown: 1,
-            next: None,
-        };
-        let now = Moment { run: subject.start()?, place, is_looked: false, patience: PATIENCE };
-        let most = (BYTES / 2 / now.run.bytes().max(1)).clamp(FEWEST, MOST);
-        let kept = BTreeMap::from([(0, now.clone())]);
-        Ok(Self { subject, now, kept, apart: APART, near: BTreeMap::new(), most })
+        let now = Moment::first(&subject, share)?;
+        let most = (BYTES / 2 / now.bytes()).min(MOST);
+        let (kept, near) = (BTreeMap::new(), BTreeMap::new());
+        Ok(Self { subject, now, kept, apart: APART, near, most, share })
     }
 
     /// What runs.
@@ -201,6 +192,11 @@ impl Replay {
     /// How many copies of the run there are.
     pub fn copies(&self) -> usize {
         self.kept.len() + self.near.len()
+    }
+
+    /// How many bytes the copies need.
+    pub fn copied_bytes(&self) -> usize {
+        self.kept.values().chain(self.near.values()).map(Moment::bytes).sum()
     }
 
     /// Whether the fragment is discarded.
@@ -264,19 +260,25 @@ impl Replay {
         }
     }
 
-    /// A copy of the run at a place from which it comes to at least one halt before `limit`.
+    /// A copy of the run at a place from which it comes to at least one halt before `limit`, which may
+    /// be its beginning.
     fn before(&self, limit: u64) -> Option<Moment> {
         let until = limit.saturating_sub(1).max(1);
         let last =
             |of: &BTreeMap<u64, Moment>| of.range(..until).next_back().map(|(clock, _)| *clock);
         let (near, kept) = (last(&self.near), last(&self.kept));
-        if near > kept { self.near.get(&near?).cloned() } else { self.kept.get(&kept?).cloned() }
+        let found = match near > kept {
+            true => self.near.get(&near?),
+            false => kept.and_then(|clock| self.kept.get(&clock)),
+        };
+        found.cloned().or_else(|| Moment::first(&self.subject, self.share).ok())
     }
 
     /// Goes to a halt that the run has come to before.
     fn restore(&mut self, clock: u64) {
         let Some(mut moment) = self.before(clock + 1) else { return };
-        let apart = (clock.saturating_sub(moment.place.clock) / (self.most as u64 / 2)).max(APART);
+        let half = (self.most as u64 / 2).max(1);
+        let apart = (clock.saturating_sub(moment.place.clock) / half).max(APART);
         if clock.saturating_sub(moment.place.clock) > apart {
             self.near.clear();
         }
@@ -293,6 +295,9 @@ impl Replay {
     /// Keeps a copy, if it is time for one. Where there are too many, every second goes.
     fn keep(&mut self) {
         let clock = self.now.place.clock;
+        if self.most == 0 {
+            return;
+        }
         let last = self.kept.last_key_value().map_or(0, |(clock, _)| *clock);
         if clock < last + self.apart {
             return;
@@ -316,6 +321,29 @@ enum Gone {
 }
 
 impl Moment {
+    /// The beginning of a run.
+    fn first(subject: &Subject, share: f64) -> Result<Self, Error> {
+        let place = Place {
+            walk: Walk::new(subject.function()),
+            clock: 0,
+            halt: Halt::Start,
+            runs: vec![0; subject.statements.all().len()],
+            marks: Vec::new(),
+            notice: Notice::new(share),
+            is_started: false,
+            returned: None,
+            shown: 1,
+            next: None,
+        };
+        Ok(Self { run: subject.start()?, place, is_looked: false, patience: PATIENCE })
+    }
+
+    /// About how many bytes it needs.
+    fn bytes(&self) -> usize {
+        let place = size_of_val(&self.place.runs[..]) + size_of_val(&self.place.marks[..]);
+        size_of::<Self>() + self.run.bytes() + place
+    }
+
     /// Goes on to the next halt. The end is one, and nothing comes after it.
     fn go_on(&mut self, subject: &Subject, is_interrupted: &dyn Fn() -> bool) -> Gone {
         if matches!(self.place.halt, Halt::End | Halt::Failed(_)) {

@@ -109,17 +109,14 @@ fn scan(text: &str, from: usize, least: i32, mut is_meant: impl FnMut(i32, u8) -
     let bytes = text.as_bytes();
     let (mut at, mut depth) = (from, 0);
     while let Some(byte) = bytes.get(at) {
-        match (byte, bytes.get(at + 1)) {
-            (b'/', Some(b'/')) => {
-                at += bytes[at..].iter().take_while(|byte| **byte != b'\n').count();
-                continue;
-            }
-            (b'/', Some(b'*')) => {
-                at += comment_length(&bytes[at..]);
-                continue;
-            }
-            (b'{', _) => depth += 1,
-            (b'}', _) => depth -= 1,
+        let comment = if *byte == b'/' { comment_length(&text[at..]) } else { 0 };
+        if comment > 0 {
+            at += comment;
+            continue;
+        }
+        match byte {
+            b'{' => depth += 1,
+            b'}' => depth -= 1,
             _ => {}
         }
         at += 1;

@@ -8,6 +8,7 @@ use lamplight_eval::{
     SlotKind, Variable, VariableKind,
 };
 use lamplight_lint::{DocumentedParameter, documented_parameters};
+use lamplight_syntax::words::words;
 
 use crate::scope::Scopes;
 use crate::text::{StatementId, Statements};
@@ -283,11 +284,9 @@ fn function_names(text: SubjectText<'_>) -> Vec<FunctionName> {
     functions.map(named).chain(points.into_iter().map(of_point)).collect()
 }
 
-/// The name in the head of a function.
+/// The name in the head of a function: the last word before its parameters.
 fn written_name(head: &str) -> Option<String> {
-    let before = head.split('(').next()?;
-    let is_word = |c: char| c.is_alphanumeric() || c == '_';
-    let name = before.trim_end().rsplit(|c: char| !is_word(c)).next()?;
-    let is_head = head.len() > before.len() && before.trim_end().len() > name.len();
-    (is_head && !name.is_empty()).then(|| name.to_owned())
+    let (before, _) = head.split_once('(')?;
+    // A type or `fn` comes first.
+    words(before).skip(1).last().map(|name| name.text.to_owned())
 }

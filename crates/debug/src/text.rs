@@ -6,6 +6,8 @@ use std::ops::Range;
 use lamplight_compose::SourceMap;
 use lamplight_diagnostic::source::{SourceId, SourceSet, Span};
 use lamplight_eval::{Program, VariableKind, VariablePlace};
+use lamplight_syntax::wesl::blank;
+use lamplight_syntax::words::{Word, words};
 
 /// Index of a statement in [`Statements`].
 pub type StatementId = u32;
@@ -27,6 +29,8 @@ pub struct Statements {
     of_code: Vec<Option<StatementId>>,
     /// That of each variable's declaration.
     of_variables: Vec<Option<StatementId>>,
+    /// That which can begin with each instruction.
+    begun_by: Vec<Option<StatementId>>,
     /// Those with which something runs.
     running: BTreeSet<StatementId>,
 }
@@ -50,10 +54,10 @@ impl Statements {
             }
         }
         let begins = program.beginnings().into_iter().zip(&of_code);
-        let running = begins
-            .filter_map(|(begins, at): (bool, &Option<StatementId>)| at.filter(|_| begins))
-            .collect();
-        Self { all: finder.all, of_code, of_variables, running }
+        let begun_by: Vec<Option<StatementId>> =
+            begins.map(|(begins, at)| at.filter(|_| begins)).collect();
+        let running = begun_by.iter().copied().flatten().collect();
+        Self { all: finder.all, of_code, of_variables, begun_by, running }
     }
 
     /// Whether something runs with a statement, so that a run can stop there.
@@ -79,6 +83,11 @@ impl Statements {
     /// The statement of an instruction; `None` for what nobody wrote.
     pub fn at(&self, pc: u32) -> Option<StatementId> {
         self.of_code.get(pc as usize).copied().flatten()
+    }
+
+    /// The statement that can begin with an instruction.
+    pub fn begun_by(&self, pc: u32) -> Option<StatementId> {
+        self.begun_by.get(pc as usize).copied().flatten()
     }
 
     /// The first instruction of a statement.
@@ -140,17 +149,9 @@ fn body_of(text: &str, name: &str) -> Option<Range<usize>> {
 
 /// Where `let` gives a name in a part of a text.
 fn lets_named(text: &str, part: Range<usize>, name: &str) -> Vec<usize> {
-    let is_word = |c: char| c.is_alphanumeric() || c == '_';
-    let mut found = Vec::new();
-    for (at, _) in text[part.clone()].match_indices("let ") {
-        let at = part.start + at;
-        let rest = text[at + 4..].trim_start();
-        let after = rest.strip_prefix(name).filter(|after| !after.starts_with(is_word));
-        if after.is_some() && !text[..at].ends_with(is_word) {
-            found.push(at);
-        }
-    }
-    found
+    let all: Vec<Word<'_>> = words(&text[part.clone()]).collect();
+    let pairs = all.windows(2).filter(|pair| pair[0].text == "let" && pair[1].text == name);
+    pairs.map(|pair| part.start + pair[0].at).collect()
 }
 
 /// Finds statements by places in the text that naga parsed.
@@ -183,39 +184,25 @@ impl Finder<'_> {
 
 /// The bytes after which a statement, or the head of one, ends: `;`, `{` and `}` outside of comments.
 fn cuts_of(text: &str) -> Vec<usize> {
-    let bytes = text.as_bytes();
     let (mut cuts, mut at) = (vec![0], 0);
-    while let Some(byte) = bytes.get(at) {
-        match (byte, bytes.get(at + 1)) {
-            (b'/', Some(b'/')) => {
-                at += text[at..].find('\n').unwrap_or(text.len() - at);
-            }
-            (b'/', Some(b'*')) => at += comment_length(&bytes[at..]),
-            (b';' | b'{' | b'}', _) => {
-                at += 1;
-                cuts.push(at);
-            }
-            _ => at += 1,
+    while let Some(byte) = text.as_bytes().get(at) {
+        let comment = if *byte == b'/' { comment_length(&text[at..]) } else { 0 };
+        at += comment.max(1);
+        if matches!(byte, b';' | b'{' | b'}') {
+            cuts.push(at);
         }
     }
     cuts.push(text.len());
     cuts
 }
 
-/// The bytes of a block comment, with those that are nested in it.
-pub(crate) fn comment_length(bytes: &[u8]) -> usize {
-    let (mut depth, mut at) = (0, 0);
-    while at + 1 < bytes.len() {
-        match &bytes[at..at + 2] {
-            b"/*" => (depth, at) = (depth + 1, at + 2),
-            b"*/" => (depth, at) = (depth - 1, at + 2),
-            _ => at += 1,
-        }
-        if depth == 0 {
-            return at;
-        }
+/// The bytes of the comment that a text begins with; 0 if it begins with none. Those of GLSL do not
+/// nest: one that would not end in WGSL ends as there.
+pub(crate) fn comment_length(text: &str) -> usize {
+    if text.starts_with("/*") && !blank::block_comment(text).1 {
+        return text.find("*/").map_or(text.len(), |end| end + 2);
     }
-    bytes.len()
+    blank::comment_length(text)
 }
 
 /// The statement that holds a byte, without comments and blanks before it.
@@ -228,13 +215,13 @@ fn statement_around(text: &str, cuts: &[usize], byte: usize) -> Range<usize> {
         let trimmed = rest.trim_start();
         start += rest.len() - trimmed.len();
         let skipped = match trimmed {
-            _ if trimmed.starts_with("//") || trimmed.starts_with('#') => {
-                trimmed.find('\n').unwrap_or(trimmed.len())
-            }
-            _ if trimmed.starts_with("/*") => comment_length(trimmed.as_bytes()),
-            _ => break,
+            _ if trimmed.starts_with('#') => trimmed.find('\n').unwrap_or(trimmed.len()),
+            _ => comment_length(trimmed),
         };
-        start += skipped.max(1);
+        if skipped == 0 {
+            break;
+        }
+        start += skipped;
     }
     let start = start.min(end);
     let is_end = |c: char| c.is_whitespace() || matches!(c, ';' | '{' | '}');

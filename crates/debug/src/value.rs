@@ -1,10 +1,10 @@
 //! Values of a run: a scalar in f32, in f64 and with its bound, and trees of them.
 
-use lamplight_eval::{Number, Shape, SlotKind, Traced, VariablePlace};
+use lamplight_eval::{Number, Shape, ShapePart, SlotKind, Traced, VariablePlace};
 use serde_json::{Value as Json, json};
 
 /// The most scalars of a value that are kept. A larger array is cut.
-const MOST: u32 = 64;
+const MOST: usize = 64;
 
 /// One scalar.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,13 +91,11 @@ impl Value {
 
     /// Reads a part of a value, which begins with its scalar `first`.
     pub fn read_part(shape: &Shape, place: VariablePlace, first: u32, memory: &[Traced]) -> Self {
-        let mut kinds = Vec::new();
-        collect_kinds(shape, &mut kinds);
         let scalar = |(index, kind): (usize, SlotKind)| {
             let slot = place.slot(first.saturating_add(index as u32), memory) as usize;
             Scalar { kind, slot: memory.get(slot).copied().unwrap_or_default() }
         };
-        let scalars = kinds.into_iter().enumerate().map(scalar).collect();
+        let scalars = shape.kinds(MOST).into_iter().enumerate().map(scalar).collect();
         Self { shape: shape.clone(), scalars }
     }
 
@@ -113,32 +111,17 @@ impl Value {
 
     /// The parts by name: members, elements, columns or components; none of a scalar.
     pub fn parts(&self) -> Vec<(String, Self)> {
-        let mut at = 0;
-        let mut part = |shape: &Shape| {
-            let from = at;
-            at += shape.scalars() as usize;
-            let scalars = self.scalars.iter().skip(from).take(shape.scalars() as usize);
-            Self { shape: shape.clone(), scalars: scalars.copied().collect() }
+        let shown = match &self.shape {
+            Shape::Array(_, element) => {
+                (self.scalars.len() as u32).div_ceil(element.scalars().max(1))
+            }
+            _ => u32::MAX,
         };
-        match &self.shape {
-            Shape::Scalar(_) => Vec::new(),
-            Shape::Vector(count, kind) => {
-                let names = ["x", "y", "z", "w"].into_iter().take(*count as usize);
-                names.map(|name| (name.to_owned(), part(&Shape::Scalar(*kind)))).collect()
-            }
-            Shape::Matrix { columns, rows } => {
-                let column = Shape::Vector(*rows, SlotKind::Float);
-                (0..*columns).map(|index| (format!("[{index}]"), part(&column))).collect()
-            }
-            Shape::Array(count, element) => {
-                let kept = (self.scalars.len() as u32).div_ceil(element.scalars().max(1));
-                let shown = (0..(*count).min(kept)).map(|index| format!("[{index}]"));
-                shown.map(|name| (name, part(element))).collect()
-            }
-            Shape::Struct(members) => {
-                members.iter().map(|(name, shape)| (name.clone(), part(shape))).collect()
-            }
-        }
+        let part = |ShapePart { name, first, shape }: ShapePart| {
+            let scalars = self.scalars.iter().skip(first as usize).take(shape.scalars() as usize);
+            (name, Self { scalars: scalars.copied().collect(), shape })
+        };
+        self.shape.parts(0..shown).map(part).collect()
     }
 
     /// Every scalar or vector in it, with its path.
@@ -146,10 +129,7 @@ impl Value {
         if self.is_flat() {
             return vec![(name.to_owned(), self.clone())];
         }
-        let path = |part: &str| match part.starts_with('[') {
-            true => format!("{name}{part}"),
-            false => format!("{name}.{part}"),
-        };
+        let path = |part: &str| ShapePart::path(name, part);
         self.parts().into_iter().flat_map(|(part, value)| value.leaves(&path(&part))).collect()
     }
 
@@ -196,21 +176,6 @@ pub fn number_json(value: f64) -> Json {
 
 fn join(texts: impl Iterator<Item = String>) -> String {
     texts.collect::<Vec<_>>().join(" ")
-}
-
-fn collect_kinds(shape: &Shape, to: &mut Vec<SlotKind>) {
-    if to.len() >= MOST as usize {
-        return;
-    }
-    match shape {
-        Shape::Scalar(kind) => to.push(*kind),
-        Shape::Vector(count, kind) => to.extend((0..*count).map(|_| *kind)),
-        Shape::Matrix { columns, rows } => to.extend((0..columns * rows).map(|_| SlotKind::Float)),
-        Shape::Array(count, element) => {
-            (0..(*count).min(MOST)).for_each(|_| collect_kinds(element, to))
-        }
-        Shape::Struct(members) => members.iter().for_each(|(_, shape)| collect_kinds(shape, to)),
-    }
 }
 
 fn kind_text(kind: SlotKind) -> &'static str {

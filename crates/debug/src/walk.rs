@@ -24,8 +24,6 @@ pub struct Frame {
     pub statement: Option<StatementId>,
     /// The loops that it is in, the innermost last.
     pub loops: Vec<Loop>,
-    /// Whether its variables have their initial values, so that its first statement can begin.
-    has_begun: bool,
 }
 
 /// Where a run is.
@@ -63,17 +61,13 @@ impl Walk {
     pub fn end<N: Number>(&mut self, statements: &Statements, seen: &Executed<'_, N>) -> Motion {
         let mut motion = Motion::default();
         let Some(frame) = self.frames.get_mut(seen.depth) else { return motion };
-        if !frame.has_begun {
-            frame.has_begun = seen.action == Action::Begin;
-            return motion;
-        }
         while let Some(top) = frame.loops.last().copied()
             && !(top.first..=top.last).contains(&seen.pc)
         {
             frame.loops.pop();
             motion.left.push(top);
         }
-        let at = statements.at(seen.pc).filter(|_| begins(seen.action));
+        let at = statements.begun_by(seen.pc);
         motion.is_begun = at.is_some_and(|at| frame.statement != Some(at));
         let is_turn = matches!(seen.action, Action::Turn { .. });
         let ends = motion.is_begun || is_turn || seen.action == Action::Return;
@@ -111,20 +105,6 @@ impl Walk {
 
 impl Frame {
     fn new(function: FunctionId) -> Self {
-        Self { function, statement: None, loops: Vec::new(), has_begun: false }
-    }
-}
-
-/// Whether an instruction can be the first of a statement. Jumps and the like have the place of
-/// what is around them.
-fn begins(action: Action) -> bool {
-    match action {
-        Action::Write
-        | Action::Branch { .. }
-        | Action::Switch { .. }
-        | Action::Call { .. }
-        | Action::Discard
-        | Action::Texture => true,
-        Action::Jump | Action::Begin | Action::Return | Action::Turn { .. } => false,
+        Self { function, statement: None, loops: Vec::new() }
     }
 }

@@ -174,32 +174,18 @@ fn input_kinds(subject: &Subject, slot: u32) -> impl Fn(u32) -> SlotKind + '_ {
         _ => false,
     };
     let variable = subject.program.variables().iter().find(holds);
-    let mut kinds = Vec::new();
-    if let Some(variable) = variable {
-        scalar_kinds(&variable.shape, &mut kinds);
-    }
+    let kinds = variable.map_or(Vec::new(), |variable| variable.shape.kinds(usize::MAX));
     let first = variable.map_or(0, |variable| match variable.place {
         VariablePlace::At { slot, .. } | VariablePlace::Through { slot, .. } => slot,
     });
     move |index| kinds.get((slot - first + index) as usize).copied().unwrap_or(SlotKind::Uint)
 }
 
-fn scalar_kinds(shape: &Shape, to: &mut Vec<SlotKind>) {
-    match shape {
-        Shape::Scalar(kind) => to.push(*kind),
-        Shape::Vector(count, kind) => to.extend((0..*count).map(|_| *kind)),
-        Shape::Matrix { .. } => to.extend((0..shape.scalars()).map(|_| SlotKind::Float)),
-        Shape::Array(count, element) => (0..*count).for_each(|_| scalar_kinds(element, to)),
-        Shape::Struct(members) => members.iter().for_each(|(_, shape)| scalar_kinds(shape, to)),
-    }
-}
-
 /// The most scalars of one variable that are seeds.
-const MOST_PARTS: u32 = 16;
+const MOST_PARTS: usize = 16;
 
 fn variable_seeds(node: NodeId, variable: &Variable) -> Vec<Seed> {
-    let mut kinds = Vec::new();
-    scalar_kinds(&variable.shape, &mut kinds);
+    let kinds = variable.shape.kinds(MOST_PARTS);
     let count = variable.shape.scalars();
     let seed = |(index, kind): (u32, SlotKind)| {
         let name = component_name(&variable.name, index, count);
@@ -207,7 +193,7 @@ fn variable_seeds(node: NodeId, variable: &Variable) -> Vec<Seed> {
         let (place, variable) = (variable.place, variable.name.clone());
         Seed { node, name, place, index, kind, is_last, variable }
     };
-    (0..count.min(MOST_PARTS)).zip(kinds).map(seed).collect()
+    (0..count).zip(kinds).map(seed).collect()
 }
 
 fn component_name(name: &str, index: u32, count: u32) -> String {
@@ -425,42 +411,13 @@ fn find_slot(subject: &Subject, asked: &str) -> Result<u32, WhyError> {
     }
 }
 
-/// Which scalar a path names, or the paths that there are.
+/// Which scalar a path names, or the paths of those that it may mean.
 fn scalar_at(shape: &Shape, path: &str) -> Result<u32, Vec<String>> {
-    let mut parts = Vec::new();
-    collect_paths("", shape, &mut parts);
-    let asked = path
-        .strip_suffix('r')
-        .map(|rest| format!("{rest}x"))
-        .or_else(|| path.strip_suffix('g').map(|rest| format!("{rest}y")))
-        .or_else(|| path.strip_suffix('b').map(|rest| format!("{rest}z")))
-        .or_else(|| path.strip_suffix('a').map(|rest| format!("{rest}w")))
-        .filter(|_| path.len() >= 2 && path[..path.len() - 1].ends_with('.'));
-    let is_asked = |part: &&String| **part == path || asked.as_deref() == Some(part);
-    match parts.iter().find(is_asked).and_then(|part| parts.iter().position(|one| one == part)) {
-        Some(index) => Ok(index as u32),
-        None => Err(parts.into_iter().take(MOST_PARTS as usize).collect()),
-    }
-}
-
-fn collect_paths(path: &str, shape: &Shape, to: &mut Vec<String>) {
-    match shape {
-        Shape::Scalar(_) => to.push(path.to_owned()),
-        Shape::Vector(count, _) => {
-            let names = ["x", "y", "z", "w"].into_iter().take(*count as usize);
-            to.extend(names.map(|name| format!("{path}.{name}")));
-        }
-        Shape::Matrix { columns, rows } => {
-            let column = Shape::Vector(*rows, SlotKind::Float);
-            (0..*columns).for_each(|at| collect_paths(&format!("{path}[{at}]"), &column, to));
-        }
-        Shape::Array(count, element) => {
-            (0..*count).for_each(|at| collect_paths(&format!("{path}[{at}]"), element, to))
-        }
-        Shape::Struct(members) => {
-            for (name, shape) in members {
-                collect_paths(&format!("{path}.{name}"), shape, to);
-            }
+    match shape.follow(path) {
+        Ok(part) if part.shape.is_scalar() => Ok(part.first),
+        _ => {
+            let parts = shape.leaves(MOST_PARTS, Shape::is_scalar);
+            Err(parts.into_iter().map(|part| part.name).collect())
         }
     }
 }

@@ -29,6 +29,10 @@ fn composed(name: &str, text: &str, language: Language) -> (Composed, SourceSet)
 }
 
 fn given_of(composed: &Composed, sources: SourceSet, arguments: &[f32]) -> Given {
+    called(composed, sources, Call::Alone(arguments.to_vec()))
+}
+
+fn called(composed: &Composed, sources: SourceSet, call: Call) -> Given {
     let validated = validate(composed).unwrap();
     let text = SubjectText {
         module: &validated.module,
@@ -36,7 +40,6 @@ fn given_of(composed: &Composed, sources: SourceSet, arguments: &[f32]) -> Given
         map: &composed.map,
         sources: &sources,
     };
-    let call = Call::Alone(arguments.to_vec());
     let subject = Subject::new(text, "f", call, Resources::default()).unwrap();
     Given { sources, subject }
 }
@@ -298,6 +301,33 @@ fn a_long_loop_goes_back() {
     assert!(tenth(&replay.seen()));
     // Nobody is asked for less than some thousand instructions.
     assert_eq!(replay.forward(&mut |_| false, &|| true), Found::Interrupted);
+}
+
+/// Copies of a run with much memory are few, or there are none, and steps back lead to the same places.
+/// Each of the four fragments of a quad has the array.
+#[test]
+fn copies_have_bounded_memory() {
+    for (count, is_copied) in [(1 << 12, true), (1 << 17, true), (1 << 19, false)] {
+        let text = format!(
+            "fn f(x: f32) -> f32 {{\n    var all: array<f32, {count}>;\n    \
+             for (var i = 0; i < 400; i++) {{\n        all[i] = x;\n    }}\n    return all[7];\n}}\n"
+        );
+        let (composed, sources) = composed("own.wesl", &text, Language::Wesl);
+        let quad = Call::Quad(std::array::from_fn(|_| vec![1.0]), 2);
+        let Given { sources: _, subject } = called(&composed, sources, quad);
+        let mut replay = Replay::new(subject, 0.01).unwrap();
+        assert_eq!(replay.forward(&mut |_| false, &|| false), Found::No);
+        let end = replay.seen().place.clock();
+        for step in 1..4 {
+            assert_eq!(replay.back(&mut |_| true, &|| false), Found::Yes);
+            assert_eq!(replay.seen().place.clock(), end - step);
+        }
+        let (copies, bytes) = (replay.copies(), replay.copied_bytes());
+        assert_eq!(copies > 0, is_copied, "{count}: {copies}");
+        assert!(bytes <= 96 << 20, "{count}: {bytes}");
+        // Each number has at least its f32 and its f64.
+        assert!(bytes >= 12 * copies * 4 * count, "{count}: {bytes}");
+    }
 }
 
 /// What an expression calls reads inputs, globals and buffers as they are where the run stands.

@@ -32,6 +32,7 @@ mod number;
 mod operation;
 mod program;
 mod resources;
+mod shape;
 mod traced;
 
 pub use batch::Batch;
@@ -41,10 +42,11 @@ pub use error::{Error, Finding, FindingKind};
 pub use flow::SlotRange;
 pub use layout::{MAX_SLOTS, SlotKind};
 pub use machine::{Action, Executed, LOOP_LIMIT, Machine, Observer, Paced, TexelRead, TextureRead};
-pub use names::{Shape, Variable, VariableKind, VariablePlace};
+pub use names::{Variable, VariableKind, VariablePlace};
 pub use number::{Bounded, Number, half_from, half_to};
 pub use program::{Branch, CoveragePoint, Function, FunctionId, Program};
 pub use resources::{
     Address, Filter, MipLevel, Resources, Sampler, Texels, Texture, TextureDimension,
 };
+pub use shape::{Shape, ShapePart};
 pub use traced::Traced;

@@ -1,9 +1,9 @@
 //! What the text calls the values of a program, and where they are.
 
-use crate::layout::{SlotKind, kind_of};
 use crate::number::Number;
 use crate::program::FunctionId;
-use naga::{ArraySize, Handle, Span, Type, TypeInner, UniqueArena};
+use crate::shape::Shape;
+use naga::Span;
 
 /// A value that has a name in the text.
 #[derive(Debug, Clone)]
@@ -57,59 +57,6 @@ impl VariablePlace {
                 let address = memory.get(slot as usize).map_or(0, |slot| slot.word());
                 address.wrapping_add(offset).wrapping_add(index)
             }
-        }
-    }
-}
-
-/// How a value is made of scalars.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
-    /// One scalar.
-    Scalar(SlotKind),
-    /// Two to four scalars.
-    Vector(u32, SlotKind),
-    /// Columns of rows.
-    Matrix { columns: u32, rows: u32 },
-    /// Elements of one shape.
-    Array(u32, Box<Self>),
-    /// Members by name.
-    Struct(Vec<(String, Self)>),
-}
-
-impl Shape {
-    /// The shape of a type; `None` for pointers, textures and samplers. A runtime-sized array has
-    /// one element.
-    pub fn of(types: &UniqueArena<Type>, inner: &TypeInner) -> Option<Self> {
-        let typed = |ty: Handle<Type>| Self::of(types, &types[ty].inner);
-        Some(match *inner {
-            TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => Self::Scalar(kind_of(scalar)?),
-            TypeInner::Vector { size, scalar } => Self::Vector(size as u32, kind_of(scalar)?),
-            TypeInner::Matrix { columns, rows, scalar: _ } => {
-                Self::Matrix { columns: columns as u32, rows: rows as u32 }
-            }
-            TypeInner::Array { base, size, stride: _ } => {
-                let count = if let ArraySize::Constant(count) = size { count.get() } else { 1 };
-                Self::Array(count, Box::new(typed(base)?))
-            }
-            TypeInner::Struct { ref members, span: _ } => {
-                let member = |(index, member): (usize, &naga::StructMember)| {
-                    let name = member.name.clone().unwrap_or_else(|| index.to_string());
-                    Some((name, typed(member.ty)?))
-                };
-                Self::Struct(members.iter().enumerate().map(member).collect::<Option<_>>()?)
-            }
-            _ => return None,
-        })
-    }
-
-    /// How many scalars it has.
-    pub fn scalars(&self) -> u32 {
-        match self {
-            Self::Scalar(_) => 1,
-            Self::Vector(count, _) => *count,
-            Self::Matrix { columns, rows } => columns * rows,
-            Self::Array(count, element) => count.saturating_mul(element.scalars()),
-            Self::Struct(members) => members.iter().map(|(_, shape)| shape.scalars()).sum(),
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use super::{Loc, LoweredBody, ProgramBuilder};
 use crate::code::Operand;
-use crate::names::{Shape, Variable, VariableKind, VariablePlace};
+use crate::names::{Variable, VariableKind, VariablePlace};
 use crate::program::FunctionId;
+use crate::shape::Shape;
 use naga::{AddressSpace, Function, Span, TypeInner};
 
 fn place_of(loc: Loc) -> VariablePlace {

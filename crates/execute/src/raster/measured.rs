@@ -3,7 +3,8 @@
 use lamplight_diagnostic::{Diagnostic, codes, nearest_name};
 use lamplight_eval::{
     Action, Error, Executed, FindingKind, FunctionId, Machine, Number, Observer, Program,
-    Resources, Shape, SlotKind, SlotRange, Traced, Variable, VariableKind, VariablePlace,
+    Resources, Shape, ShapePart, SlotKind, SlotRange, Traced, Variable, VariableKind,
+    VariablePlace,
 };
 use rayon::prelude::*;
 
@@ -315,13 +316,17 @@ fn leaves_domain<N: Number>(seen: &Executed<'_, N>) -> bool {
 /// The variable that a name such as `n`, `n.x` or `lamp.position` means: in the stage, else in any
 /// function, else of the module.
 fn find(program: &Program, stage: FunctionId, asked: &str) -> Result<Asked, Diagnostic> {
-    let (name, path) = asked.split_once('.').unwrap_or((asked, ""));
+    let (name, path) = asked.split_at(asked.find(['.', '[']).unwrap_or(asked.len()));
     let all = program.variables();
     let is_named = |one: &&Variable| one.name == name && one.kind != VariableKind::Result;
     let own = |one: &&Variable| is_named(one) && one.function == Some(stage);
     let found = all.iter().rev().find(own).or_else(|| all.iter().rev().find(is_named));
     let variable = found.ok_or_else(|| unknown(program, name))?;
-    let (first, shape) = follow(name, &variable.shape, path)?;
+    let none = |piece: String| {
+        let help = "members and components have names, such as `.position.x`, elements numbers";
+        refused(format!("`{name}` has no `{piece}`"), help)
+    };
+    let ShapePart { name: _, first, shape } = variable.shape.follow(path).map_err(none)?;
     let (count, kind) = match shape {
         Shape::Scalar(kind) => (1, kind),
         Shape::Vector(count, kind) => (count.min(3), kind),
@@ -354,30 +359,4 @@ fn unknown(program: &Program, name: &str) -> Diagnostic {
         None => format!("there are {}", known.collect::<Vec<_>>().join(", ")),
     };
     refused(format!("no variable of the shader is named `{name}`"), &help)
-}
-
-/// The first scalar and the shape of the part that a path such as `position.x` leads to.
-fn follow(name: &str, shape: &Shape, path: &str) -> Result<(u32, Shape), Diagnostic> {
-    let (mut shape, mut first) = (shape.clone(), 0);
-    for word in path.split('.').filter(|word| !word.is_empty()) {
-        let none = || {
-            let help = "members and components have names, such as `.position.x`";
-            refused(format!("`{name}` has no `{word}`"), help)
-        };
-        shape = match &shape {
-            Shape::Vector(count, kind) => {
-                let at = ["xyzw", "rgba"].into_iter().find_map(|names| names.find(word));
-                let at = at.filter(|at| word.len() == 1 && *at < *count as usize);
-                first += at.ok_or_else(none)? as u32;
-                Shape::Scalar(*kind)
-            }
-            Shape::Struct(members) => {
-                let at = members.iter().position(|(known, _)| known == word).ok_or_else(none)?;
-                first += members[..at].iter().map(|(_, shape)| shape.scalars()).sum::<u32>();
-                members[at].1.clone()
-            }
-            _ => return Err(none()),
-        };
-    }
-    Ok((first, shape))
 }
