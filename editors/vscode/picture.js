@@ -5,28 +5,34 @@ const fs = require('node:fs');
 const os = require('node:os');
 const path = require('node:path');
 
-/** The options of a launch that a picture has too, as `lamplight render` takes them. */
-const OPTIONS = ['model', 'scene', 'camera', 'environment', 'set', 'uniform', 'texture', 'entry', 'time'];
+/** What a launch may say, as the editor's settings describe it: the one table of its options. */
+const { properties } = require('./package.json').contributes.debuggers[0].configurationAttributes.launch;
+
+/** What `lamplight render` has under another name, or not. */
+const OF_DEBUG = ['program', 'pixel', 'lost', 'stopOnEntry', 'cwd', 'args'];
+
+const OPTIONS = Object.keys(properties).filter((name) => !OF_DEBUG.includes(name));
+
+/** The values of an option. A list of numbers is one value; others, and objects, have several. */
+function valuesOf(name, value) {
+  const text = (one) => (Array.isArray(one) ? one.join(name === 'size' ? 'x' : ',') : String(one));
+  if (Array.isArray(value)) {
+    return value.every((one) => typeof one === 'number') ? [text(value)] : value.map(text);
+  }
+  if (value && typeof value === 'object') {
+    return Object.entries(value).map(([key, one]) => `${key}=${text(one)}`);
+  }
+  return value === undefined || value === null ? [] : [text(value)];
+}
 
 /** The arguments of `lamplight render` for a launch. */
 function renderArguments(launch, out) {
-  const joined = (value) => (Array.isArray(value) ? value.join(',') : String(value));
-  const row = ['render', launch.program, '--out', out, '--force', '--samples', '1'];
-  const size = launch.size ?? [512, 512];
-  row.push('--size', Array.isArray(size) ? size.join('x') : size);
-  for (const name of OPTIONS) {
-    const value = launch[name];
-    if (value === undefined) continue;
-    const isList = Array.isArray(value) && name !== 'camera';
-    if (isList) {
-      value.forEach((one) => row.push(`--${name}=${one}`));
-    } else if (typeof value === 'object' && !Array.isArray(value)) {
-      Object.entries(value).forEach(([key, one]) => row.push(`--${name}=${key}=${joined(one)}`));
-    } else {
-      row.push(`--${name}=${joined(value)}`);
-    }
-  }
-  return row.concat(launch.args ?? []);
+  const options = OPTIONS.flatMap((name) => {
+    const value = launch[name] ?? (name === 'size' ? [512, 512] : undefined);
+    return valuesOf(name, value).map((one) => `--${name}=${one}`);
+  });
+  return ['render', launch.program, '--out', out, '--force', '--samples', '1', ...options,
+    ...(launch.args ?? [])];
 }
 
 /** The pixel of a picture that a click in its element means. */
@@ -62,7 +68,7 @@ picture.addEventListener('click', (event) => {
 function drawn(command, launch) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'lamplight-'));
   const out = path.join(folder, 'picture.png');
-  const options = { cwd: launch.cwd ?? path.dirname(launch.program) };
+  const options = { cwd: launch.cwd };
   return new Promise((resolve, reject) => {
     execFile(command, renderArguments(launch, out), options, (error, _, words) => {
       try {
@@ -75,24 +81,47 @@ function drawn(command, launch) {
   });
 }
 
+/** A launch in which variables such as `${workspaceFolder}` have their values, as the editor has them. */
+function resolved(value, file, folder) {
+  if (Array.isArray(value)) return value.map((one) => resolved(one, file, folder));
+  if (value && typeof value === 'object') {
+    const entries = Object.entries(value).map(([key, one]) => [key, resolved(one, file, folder)]);
+    return Object.fromEntries(entries);
+  }
+  if (typeof value !== 'string') return value;
+  const { base, name, ext, dir } = path.parse(file);
+  const known = {
+    file, fileBasename: base, fileBasenameNoExtension: name, fileExtname: ext, fileDirname: dir,
+    relativeFile: path.relative(folder, file), workspaceFolder: folder,
+    workspaceFolderBasename: path.basename(folder), userHome: os.homedir(), pathSeparator: path.sep,
+  };
+  return value.replace(/\$\{(env:)?([^}]*)\}/g, (all, env, word) =>
+    (env ? process.env[word] ?? '' : known[word] ?? all));
+}
+
+/** The launch of a file: what a configuration for it says, or none. */
+function launchOf(file, scope) {
+  const folder = scope?.uri.fsPath ?? path.dirname(file);
+  const all = vscode.workspace.getConfiguration('launch', scope?.uri).get('configurations') ?? [];
+  const own = all.filter((one) => one.type === 'lamplight').map((one) => resolved(one, file, folder));
+  const isOwn = (one) =>
+    one.program && path.resolve(one.cwd ?? folder, one.program) === path.resolve(file);
+  const { pixel: _, ...known } = own.find(isOwn) ?? {};
+  return {
+    type: 'lamplight', request: 'launch', name: path.basename(file), stopOnEntry: true, cwd: folder,
+    ...known, program: file,
+  };
+}
+
 /** Shows the picture of the shader that is edited. A click starts a session for its pixel. */
 async function showPicture(command, file) {
-  // A configuration for this file says what it is drawn with.
   const scope = vscode.workspace.getWorkspaceFolder(vscode.Uri.file(file));
-  const all = vscode.workspace.getConfiguration('launch', scope?.uri).get('configurations') ?? [];
-  const isOwn = (one) => one.type === 'lamplight' && [file, '${file}'].includes(one.program);
-  const cwd = scope?.uri.fsPath ?? path.dirname(file);
-  const { pixel: _, ...known } = all.find(isOwn) ?? {};
-  const launch = {
-    type: 'lamplight', request: 'launch', name: path.basename(file), stopOnEntry: true, ...known,
-    program: file, cwd,
-  };
   const panel = vscode.window.createWebviewPanel(
     'lamplight.picture', path.basename(file), vscode.ViewColumn.Beside, { enableScripts: true },
   );
   const draw = async () => {
     try {
-      panel.webview.html = page(await drawn(command, launch), path.basename(file));
+      panel.webview.html = page(await drawn(command, launchOf(file, scope)), path.basename(file));
     } catch (error) {
       vscode.window.showErrorMessage(`Lamplight: ${error.message}`);
     }
@@ -100,7 +129,7 @@ async function showPicture(command, file) {
   const saved = vscode.workspace.onDidSaveTextDocument(draw);
   panel.onDidDispose(() => saved.dispose());
   panel.webview.onDidReceiveMessage(({ pixel }) =>
-    vscode.debug.startDebugging(scope, { ...launch, pixel }));
+    vscode.debug.startDebugging(scope, { ...launchOf(file, scope), pixel }));
   await draw();
 }
 

@@ -1,7 +1,6 @@
 //! `lamplight dap`: a debug adapter on standard input and output.
 
 use std::io::{BufReader, stdin};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -68,7 +67,8 @@ fn serve(
     urgent: &AtomicUsize,
     form: DiagnosticForm,
 ) -> Result<(), Failure> {
-    let (mut adapter, mut host) = (Adapter::default(), Machine { urgent, form });
+    let here = std::env::current_dir()?;
+    let (mut adapter, mut host) = (Adapter::default(), Machine { urgent, form, here });
     let mut written = Ok(());
     let mut send = |message: Value| {
         if written.is_ok() {
@@ -81,11 +81,7 @@ fn serve(
                 if is_urgent(&message) {
                     urgent.fetch_sub(1, Ordering::SeqCst);
                 }
-                let receive = || adapter.receive(&message, &mut host, &mut send);
-                if catch_unwind(AssertUnwindSafe(receive)).is_err() {
-                    adapter = Adapter::default();
-                    adapter.reject("the debugger failed, and the run is lost", &mut send);
-                }
+                adapter.receive(&message, &mut host, &mut send);
             }
             Ok(Incoming::Malformed(answer)) => {
                 let words = answer.pointer("/error/message").and_then(Value::as_str);
@@ -96,7 +92,7 @@ fn serve(
                 return Err(Failure::input(format!("what comes in is no conversation: {error}")));
             }
         }
-        if adapter.is_ended {
+        if adapter.is_ended() {
             break;
         }
     }
@@ -115,16 +111,20 @@ struct Machine<'a> {
     /// How many messages came in for which a run stops.
     urgent: &'a AtomicUsize,
     form: DiagnosticForm,
+    /// The folder that the debugger was started in.
+    here: PathBuf,
 }
 
 impl Host for Machine<'_> {
     fn launch(&mut self, arguments: &Value) -> Result<Launched, Refusal> {
+        self.enter(arguments)?;
         let asked = arguments_of(arguments)?;
         let (title, share) = (asked.title(), asked.lost_share());
         let mut launched = None;
         let outcome = debug::with_subject(&asked, self.form, &mut |text, subject| {
             let (sources, title) = (text.sources.clone(), title.clone());
-            launched = Some(Launched { subject, sources, title, share });
+            let imports = text.map.imports.iter().copied().collect();
+            launched = Some(Launched { subject, sources, imports, title, share });
             Ok(())
         });
         outcome.map_err(refusal)?;
@@ -149,41 +149,34 @@ impl Host for Machine<'_> {
     }
 }
 
-/// Arguments of `launch` that are the options of this name, with how lists are joined.
-const OPTIONS: [(&str, &str); 21] = [
-    ("pixel", ","),
-    ("size", "x"),
-    ("model", ""),
-    ("scene", ""),
-    ("camera", ","),
-    ("environment", ""),
-    ("cascades", ""),
-    ("set", ""),
-    ("uniform", ""),
-    ("texture", ""),
-    ("constant", ""),
-    ("define", ""),
-    ("entry", ""),
-    ("time", ""),
-    ("colors", ""),
-    ("with", ""),
-    ("wrap", ""),
-    ("lang", ""),
-    ("stage", ""),
-    ("root", ""),
-    ("lost", ""),
-];
+impl Machine<'_> {
+    /// Goes to the folder that the paths of a launch begin at.
+    fn enter(&self, arguments: &Value) -> Result<(), Refusal> {
+        let folder = arguments.get("cwd").and_then(Value::as_str).unwrap_or_default();
+        std::env::set_current_dir(self.here.join(folder))
+            .map_err(|error| plain_refusal(&format!("`cwd` is {folder}: {error}")))
+    }
+}
+
+/// The options of `lamplight debug` that a launch has as arguments of their names.
+fn options(command: &clap::Command) -> Vec<String> {
+    let shown = command.get_arguments().filter(|argument| !argument.is_hide_set());
+    let is_left_out = |name: &str| LEFT_OUT.contains(&name);
+    let names = shown.filter_map(|argument| argument.get_long()).map(str::to_owned);
+    names.filter(|name| !is_left_out(name)).collect()
+}
+
+/// Those of a run that is printed and of the text that is made, and one whose name means the file in a
+/// launch.
+const LEFT_OUT: [&str; 7] = ["json", "why", "turns", "executor", "keep-all", "mangle", "program"];
 
 /// What `lamplight debug` would get on its command line.
 fn arguments_of(arguments: &Value) -> Result<debug::Arguments, Refusal> {
-    if let Some(folder) = arguments.get("cwd").and_then(Value::as_str) {
-        std::env::set_current_dir(folder)
-            .map_err(|error| plain_refusal(&format!("`cwd` is {folder}: {error}")))?;
-    }
+    let command = debug::launch_command();
     let mut line = vec!["launch".to_owned()];
-    for (name, joint) in OPTIONS {
-        let Some(value) = arguments.get(name) else { continue };
-        add_option(&mut line, name, joint, value)?;
+    for name in options(&command) {
+        let Some(value) = arguments.get(&name) else { continue };
+        add_option(&mut line, &name, value)?;
     }
     let further = arguments.get("args").and_then(Value::as_array);
     line.extend(further.into_iter().flatten().filter_map(Value::as_str).map(str::to_owned));
@@ -191,8 +184,6 @@ fn arguments_of(arguments: &Value) -> Result<debug::Arguments, Refusal> {
         line.push("--".to_owned());
         line.push(shortened(program));
     }
-    let command =
-        debug::Arguments::augment_args(clap::Command::new("launch").no_binary_name(false));
     let matches = command.try_get_matches_from(line);
     let read = matches.and_then(|matches| debug::Arguments::from_arg_matches(&matches));
     read.map_err(|error| {
@@ -211,24 +202,21 @@ fn shortened(program: &str) -> String {
     below.unwrap_or_else(|| PathBuf::from(program)).display().to_string()
 }
 
-fn add_option(
-    line: &mut Vec<String>,
-    name: &str,
-    joint: &str,
-    value: &Value,
-) -> Result<(), Refusal> {
+/// Adds an option with what a launch says of it. A list of numbers is one value, such as a pixel; any
+/// other list has several, and so has an object, which names them.
+fn add_option(line: &mut Vec<String>, name: &str, value: &Value) -> Result<(), Refusal> {
+    let joint = if name == "size" { "x" } else { "," };
     let text = |value: &Value| match value {
         Value::String(text) => Ok(text.clone()),
         Value::Number(number) => Ok(number.to_string()),
         Value::Bool(is_so) => Ok(is_so.to_string()),
         Value::Array(parts) => {
-            let parts: Vec<String> = parts
-                .iter()
-                .map(|part| part.as_str().map_or_else(|| part.to_string(), str::to_owned))
-                .collect();
-            Ok(parts.join(","))
+            let part = |part: &Value| part.as_str().map_or_else(|| part.to_string(), str::to_owned);
+            Ok(parts.iter().map(part).collect::<Vec<_>>().join(joint))
         }
-        _ => Err(plain_refusal(&format!("`{name}` in the launch is no text and no number"))),
+        Value::Object(_) | Value::Null => Err(plain_refusal(&format!(
+            "`{name}` of the launch is {value}: expected text or numbers"
+        ))),
     };
     let mut add = |value: String| line.push(format!("--{name}={value}"));
     match value {
@@ -238,14 +226,10 @@ fn add_option(
                 add(format!("{member}={}", text(value)?));
             }
         }
-        Value::Array(parts) if joint.is_empty() => {
+        Value::Array(parts) if !parts.iter().all(Value::is_number) => {
             for part in parts {
                 add(text(part)?);
             }
-        }
-        Value::Array(parts) => {
-            let parts: Result<Vec<String>, Refusal> = parts.iter().map(text).collect();
-            add(parts?.join(joint));
         }
         value => add(text(value)?),
     }

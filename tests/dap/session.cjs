@@ -17,17 +17,19 @@ function shown(value) {
 class Client {
   constructor() {
     this.debug = new DebugClient(program, 'dap', 'lamplight', { cwd: folder }, true);
-    for (const event of ['output', 'stopped', 'terminated', 'initialized', 'exited', 'breakpoint']) {
-      this.debug.on(event, (said) => rows.push(`  * ${event} ${shown(said.body)}`));
-    }
+    // Messages as they come in: what the client hands on later may be in another order.
+    const dispatch = this.debug.dispatch.bind(this.debug);
+    this.debug.dispatch = (text) => {
+      const said = JSON.parse(text);
+      if (said.event) rows.push(`  * ${said.event} ${shown(said.body)}`);
+      else rows.push(said.success ? `  ${shown(said.body)}` : `  refused: ${said.message}`);
+      dispatch(text);
+    };
   }
 
   async ask(command, args = {}) {
     rows.push(`${command} ${shown(args)}`);
-    const at = rows.length;
-    const said = await this.debug.send(command, args).catch((error) => ({ error }));
-    // Events of a request may come before its answer is handed on.
-    rows.splice(at, 0, said.error ? `  refused: ${said.error.message}` : `  ${shown(said.body)}`);
+    const said = await this.debug.send(command, args).catch(() => ({}));
     return said.body;
   }
 
@@ -118,7 +120,11 @@ async function wesl() {
   await client.move('stepIn');
   await client.move('reverseContinue');
   await client.move('reverseContinue');
+  await client.move('restart', {});
+  await client.breakpoints('main.wesl', [{ line: 10, condition: 'share' }, { line: -1 }]);
   await client.ask('restartFrame', { frameId: 1 });
+  await client.ask('scopes', { frameId: -1 });
+  await client.ask('cancel', { requestId: 1 });
   await client.close();
 }
 

@@ -5,8 +5,10 @@ use lamplight_diagnostic::source::SourceId;
 use serde_json::{Value, json};
 
 use crate::answer::{Failed, Host, Turn};
+use crate::numbers::{Counting, number_of};
 use crate::present::flat_text;
-use crate::session::{Running, Session, reference_of};
+use crate::session::{Running, Session};
+use crate::texts::AskedText;
 
 /// The most breakpoints of one text.
 const MOST: usize = 1000;
@@ -14,8 +16,8 @@ const MOST: usize = 1000;
 /// What the client wants in one text.
 #[derive(Debug, Clone)]
 pub(crate) struct Asked {
-    path: Option<String>,
-    reference: i64,
+    text: AskedText,
+    /// Each with its number.
     breakpoints: Vec<(i64, Value)>,
 }
 
@@ -30,6 +32,17 @@ pub(crate) struct Breakpoint {
     hits: Option<Hits>,
     /// What is printed in the place of a stop.
     log: Option<String>,
+}
+
+/// What a breakpoint does where the run is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Effect {
+    /// Nothing.
+    None,
+    /// It stops the run.
+    Stop,
+    /// It prints this, and the run goes on.
+    Print(String),
 }
 
 /// After how many runs of its line a breakpoint stops.
@@ -81,37 +94,25 @@ impl Hits {
 }
 
 impl Breakpoint {
-    /// Whether the run has come to it; with what it prints in the place of a stop.
-    pub fn meets(
-        &self,
-        seen: &Seen<'_>,
-        expressions: &mut Expressions,
-    ) -> Result<Option<Option<String>>, Failed> {
+    /// What it does where the run is.
+    ///
+    /// # Errors
+    /// Why its condition has no value, in words.
+    pub fn effect(&self, seen: &Seen<'_>, expressions: &mut Expressions) -> Result<Effect, Failed> {
         let is_here =
             *seen.place.halt() == Halt::Statement && seen.place.statement() == Some(self.statement);
         if !is_here || self.hits.is_some_and(|hits| !hits.meets(seen.place.runs(self.statement))) {
-            return Ok(None);
+            return Ok(Effect::None);
         }
-        let Some(frame) = seen.place.frames().last() else { return Ok(None) };
+        let Some(frame) = seen.place.frames().last() else { return Ok(Effect::None) };
         let frame = (frame.function, frame.statement);
-        if let Some(condition) = &self.condition {
-            let value = expressions.value(seen, frame, condition)?;
-            match value.scalars.as_slice() {
-                [one] if one.kind == lamplight_eval::SlotKind::Bool => {
-                    if one.word() == 0 {
-                        return Ok(None);
-                    }
-                }
-                _ => {
-                    return Err(format!(
-                        "`{condition}` is no condition, but {}",
-                        value.type_text()
-                    ));
-                }
-            }
+        if let Some(condition) = &self.condition
+            && !expressions.holds(seen, frame, condition)?
+        {
+            return Ok(Effect::None);
         }
-        let Some(log) = &self.log else { return Ok(Some(None)) };
-        Ok(Some(Some(logged(log, |text| expressions.value(seen, frame, text)))))
+        let print = |log| logged(log, |text| expressions.value(seen, frame, text));
+        Ok(self.log.as_deref().map(print).map_or(Effect::Stop, Effect::Print))
     }
 }
 
@@ -135,9 +136,7 @@ fn logged(
 
 impl Session {
     pub fn set_breakpoints(&mut self, turn: &mut Turn<'_>) -> Result<Value, Failed> {
-        let path = turn.arguments.pointer("/source/path").and_then(Value::as_str);
-        let reference = turn.arguments.pointer("/source/sourceReference").and_then(Value::as_i64);
-        let (path, reference) = (path.map(str::to_owned), reference.unwrap_or(0));
+        let text = turn.asked_text()?;
         let wanted = turn.arguments.get("breakpoints").and_then(Value::as_array);
         let wanted = wanted.map_or(&[][..], Vec::as_slice);
         if wanted.len() > MOST {
@@ -148,17 +147,13 @@ impl Session {
             self.numbered += 1;
             breakpoints.push((self.numbered, one.clone()));
         }
-        let is_same = |one: &Asked| match (&one.path, &path) {
-            (Some(one), Some(other)) => turn.host.is_same(one, other),
-            (None, None) => one.reference == reference,
-            _ => false,
-        };
+        let is_same = |one: &Asked| one.text.is_same(&text, turn.host);
         let old: Vec<Asked> = self.asked.iter().filter(|one| is_same(one)).cloned().collect();
         self.asked.retain(|one| !is_same(one));
         let numbers: Vec<i64> =
             old.iter().flat_map(|one| &one.breakpoints).map(|(id, _)| *id).collect();
         self.breakpoints.retain(|one| !numbers.contains(&one.id));
-        let asked = Asked { path, reference, breakpoints };
+        let asked = Asked { text, breakpoints };
         let answers = self.verify(&asked, turn.host);
         self.asked.push(asked);
         Ok(json!({ "breakpoints": answers }))
@@ -179,29 +174,33 @@ impl Session {
     fn verify(&mut self, asked: &Asked, host: &dyn Host) -> Vec<Value> {
         let mut answers = Vec::new();
         for (id, wanted) in &asked.breakpoints {
-            let line = wanted.get("line").and_then(Value::as_u64).unwrap_or(0) as u32;
-            let found = match self.run.as_mut() {
-                None => Err("no shader runs yet".to_owned()),
-                Some(run) => run.place_breakpoint(
-                    *id,
-                    (asked, wanted),
-                    line.saturating_add(1).saturating_sub(self.first_line),
-                    host,
-                ),
-            };
-            answers.push(match found {
+            answers.push(match self.place_breakpoint(*id, &asked.text, wanted, host) {
                 Ok(found) => {
-                    let line = found.line + self.first_line - 1;
+                    let line = self.counting.line(found.line);
                     let source = self.run.as_ref().map(|run| run.source_json(found.source, host));
                     self.breakpoints.push(found);
                     json!({ "id": id, "verified": true, "line": line, "source": source })
                 }
                 Err(words) => {
+                    let line = wanted.get("line").filter(|line| line.is_number());
                     json!({ "id": id, "verified": false, "line": line, "message": words })
                 }
             });
         }
         answers
+    }
+
+    fn place_breakpoint(
+        &mut self,
+        id: i64,
+        text: &AskedText,
+        wanted: &Value,
+        host: &dyn Host,
+    ) -> Result<Breakpoint, Failed> {
+        let counting = self.counting;
+        let run = self.run.as_mut().ok_or("no shader runs yet")?;
+        let line = read_line(wanted, "line", counting)?.ok_or("a breakpoint has a `line`")?;
+        run.place_breakpoint((id, wanted), run.find_source(text, host)?, line)
     }
 
     pub fn set_marks(&mut self, turn: &Turn<'_>) -> Result<Value, Failed> {
@@ -229,19 +228,10 @@ impl Session {
     /// The lines of a part of a text at which a run can stop.
     pub fn breakpoint_locations(&self, turn: &Turn<'_>) -> Result<Value, Failed> {
         let run = self.running()?;
-        let number = |name: &str| turn.arguments.get(name).and_then(Value::as_u64);
-        let first =
-            (number("line").unwrap_or(0) as u32).saturating_add(1).saturating_sub(self.first_line);
-        let last = number("endLine")
-            .map_or(first, |line| (line as u32).saturating_add(1).saturating_sub(self.first_line));
-        let path = turn.arguments.pointer("/source/path").and_then(Value::as_str);
-        let reference = turn.arguments.pointer("/source/sourceReference").and_then(Value::as_i64);
-        let asked = Asked {
-            path: path.map(str::to_owned),
-            reference: reference.unwrap_or(0),
-            breakpoints: Vec::new(),
-        };
-        let source = run.find_source(&asked, turn.host).ok_or_else(not_in_run)?;
+        let line = |name: &str| read_line(turn.arguments, name, self.counting);
+        let first = line("line")?.ok_or("`breakpointLocations` asks for a `line`")?;
+        let last = line("endLine")?.unwrap_or(first);
+        let source = run.find_source(&turn.asked_text()?, turn.host)?;
         let statements = &run.replay.subject().statements;
         let mut lines: Vec<u32> = statements
             .all()
@@ -253,40 +243,23 @@ impl Session {
             .collect();
         lines.sort_unstable();
         lines.dedup();
-        let place = |line: u32| json!({ "line": line + self.first_line - 1 });
+        let place = |line: u32| json!({ "line": self.counting.line(line) });
         Ok(json!({ "breakpoints": lines.into_iter().map(place).collect::<Vec<_>>() }))
     }
 }
 
-fn not_in_run() -> Failed {
-    "the shader does not read this file".to_owned()
+/// A line of the client, from 1.
+fn read_line(object: &Value, name: &str, counting: Counting) -> Result<Option<u32>, Failed> {
+    number_of(object, name)?.map(|line| counting.read_line(line)).transpose()
 }
 
 impl Running {
-    fn find_source(&self, asked: &Asked, host: &dyn Host) -> Option<SourceId> {
-        let is_meant = |id: &SourceId| match &asked.path {
-            Some(path) => {
-                let own = host.path_of(self.sources.get(*id));
-                own.is_some_and(|own| host.is_same(&own, path))
-            }
-            None => reference_of(*id) == asked.reference,
-        };
-        // Of several readings of one file, that which runs.
-        let statements = &self.replay.subject().statements;
-        let runs = |id: &SourceId| statements.from_line(*id, 0).is_some();
-        let all: Vec<SourceId> =
-            self.sources.iter().map(|(id, _)| id).filter(|id| is_meant(id)).collect();
-        all.iter().copied().find(runs).or(all.first().copied())
-    }
-
     fn place_breakpoint(
         &mut self,
-        id: i64,
-        (asked, wanted): (&Asked, &Value),
+        (id, wanted): (i64, &Value),
+        source: SourceId,
         line: u32,
-        host: &dyn Host,
     ) -> Result<Breakpoint, Failed> {
-        let source = self.find_source(asked, host).ok_or_else(not_in_run)?;
         let subject = self.replay.subject();
         let found = subject.statements.from_line(source, line);
         let statement = found.ok_or("no statement at this line or below runs")?;
@@ -299,7 +272,7 @@ impl Running {
         let condition = text("condition");
         if let Some(condition) = &condition {
             let function = subject.function_of(statement).ok_or("no function has this line")?;
-            self.expressions.check(subject, (function, Some(statement)), condition)?;
+            self.expressions.check_condition(subject, (function, Some(statement)), condition)?;
         }
         let log = text("logMessage");
         Ok(Breakpoint { id, line, source, statement, condition, hits, log })

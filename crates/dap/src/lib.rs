@@ -10,12 +10,13 @@
 
 mod answer;
 mod breakpoints;
-mod imports;
 mod motion;
+mod numbers;
 mod present;
 mod requests;
 mod session;
 mod stack;
+mod texts;
 mod variables;
 
 pub use answer::{Adapter, Host, Launched, Refusal};

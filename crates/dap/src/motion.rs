@@ -1,10 +1,12 @@
 //! Where the run goes, and the events that the client gets when it stops.
 
+use std::collections::BTreeSet;
+
 use lamplight_debug::{Found, Halt, Seen};
 use serde_json::{Value, json};
 
-use crate::answer::{Failed, Host};
-use crate::breakpoints::Breakpoint;
+use crate::answer::{Failed, Host, Out};
+use crate::breakpoints::{Breakpoint, Effect};
 use crate::session::{Running, Session, THREAD};
 
 /// The ways in which a client moves the run.
@@ -24,15 +26,11 @@ pub(crate) enum Motion {
     Back,
     /// Back to a breakpoint or a mark, or to the first statement.
     ContinueBack,
-    /// Back to the first statement.
-    Restart,
 }
-
-type Events = Vec<(&'static str, Value)>;
 
 impl Motion {
     fn is_back(self) -> bool {
-        matches!(self, Self::Back | Self::ContinueBack | Self::Restart)
+        matches!(self, Self::Back | Self::ContinueBack)
     }
 
     /// Whether a run that was at a depth has arrived.
@@ -45,7 +43,7 @@ impl Motion {
         };
         match self {
             Self::Entry => is_statement,
-            Self::Continue | Self::ContinueBack | Self::Restart => false,
+            Self::Continue | Self::ContinueBack => false,
             Self::Next => is_return || (is_statement && depth <= from),
             Self::In => is_return || is_statement,
             Self::Out => is_return || (is_statement && depth < from),
@@ -55,40 +53,36 @@ impl Motion {
 }
 
 impl Session {
-    /// Moves the run, and sends where it stopped.
-    pub fn go(&mut self, motion: Motion, host: &mut dyn Host) -> Events {
+    /// Moves the run, prints what breakpoints say on the way, and says where it stopped.
+    pub fn go(&mut self, motion: Motion, host: &dyn Host, out: &mut Out<'_>) {
         let Self { run, breakpoints, marks, .. } = self;
-        let Some(run) = run.as_mut() else { return Vec::new() };
+        let Some(run) = run.as_mut() else { return };
         run.handles.clear();
         let is_over = matches!(run.replay.seen().place.halt(), Halt::End | Halt::Failed(_));
         if is_over && !motion.is_back() {
-            return vec![("exited", json!({ "exitCode": 0 })), ("terminated", Value::Null)];
+            out.event("exited", json!({ "exitCode": 0 }));
+            return out.event("terminated", Value::Null);
         }
-        let (from, is_stopped) = (run.replay.seen().place.depth(), motion != Motion::Restart);
-        let Running { replay, expressions, .. } = run;
+        let from = run.replay.seen().place.depth();
+        let Running { replay, expressions, complaints, .. } = run;
         // `hit` is of the last halt that is wanted: those after it are asked about too.
-        let (mut hit, mut events) = (Vec::new(), Vec::new());
+        let mut hit = Vec::new();
         let mut wanted = |seen: &Seen<'_>| {
             let is_marked = seen.place.new_marks().any(|one| marks.contains(one.mark.name()));
             let mut own = Vec::new();
-            if is_stopped {
-                for breakpoint in breakpoints.iter() {
-                    match breakpoint.meets(seen, expressions) {
-                        Ok(None) => {}
-                        Ok(Some(None)) => own.push(breakpoint.id),
-                        Ok(Some(Some(words))) if !motion.is_back() => {
-                            events.push(output_event(&format!("{words}\n")));
-                        }
-                        Ok(Some(Some(_))) => {}
-                        Err(words) => {
-                            own.push(breakpoint.id);
-                            events.push(output_event(&condition_failed(breakpoint, &words)));
-                        }
+            for breakpoint in breakpoints.iter() {
+                match breakpoint.effect(seen, expressions) {
+                    Ok(Effect::None) => {}
+                    Ok(Effect::Stop) => own.push(breakpoint.id),
+                    Ok(Effect::Print(_)) if motion.is_back() => {}
+                    Ok(Effect::Print(words)) => print(out, &words),
+                    Err(words) => {
+                        own.push(breakpoint.id);
+                        complain(out, complaints, breakpoint, words);
                     }
                 }
             }
-            let is_wanted =
-                is_stopped && (is_marked || !own.is_empty()) || motion.has_arrived(from, seen);
+            let is_wanted = is_marked || !own.is_empty() || motion.has_arrived(from, seen);
             if is_wanted {
                 hit = own;
             }
@@ -99,8 +93,12 @@ impl Session {
             true => replay.back(&mut wanted, &is_interrupted),
             false => replay.forward(&mut wanted, &is_interrupted),
         };
-        events.push(run.stopped(motion, found, &hit, |name| marks.contains(name)));
-        events
+        let stopped = run.stopped(motion, found, &hit, |name| marks.contains(name));
+        match found {
+            // The request that interrupts is answered first.
+            Found::Interrupted => self.hold(stopped),
+            Found::Yes | Found::No => out.event("stopped", stopped),
+        }
     }
 
     /// What the mark or the error is at which the run stands.
@@ -124,30 +122,39 @@ impl Session {
     }
 }
 
-fn output_event(text: &str) -> (&'static str, Value) {
-    ("output", json!({ "category": "console", "output": text }))
+fn print(out: &mut Out<'_>, words: &str) {
+    out.event("output", json!({ "category": "console", "output": format!("{words}\n") }));
 }
 
-fn condition_failed(breakpoint: &Breakpoint, words: &str) -> String {
-    format!("the condition in line {} has no value: {words}\n", breakpoint.line)
+/// Says once why the condition of a breakpoint has no value. A run that goes back comes to it often.
+fn complain(
+    out: &mut Out<'_>,
+    complaints: &mut BTreeSet<(i64, String)>,
+    breakpoint: &Breakpoint,
+    words: String,
+) {
+    let text = format!("the condition in line {} has no value: {words}", breakpoint.line);
+    if complaints.insert((breakpoint.id, words)) {
+        print(out, &text);
+    }
 }
 
 impl Running {
-    /// The event that says why the run stands.
+    /// What the event says of why the run stands.
     fn stopped(
         &self,
         motion: Motion,
         found: Found,
         hit: &[i64],
         is_asked: impl Fn(&str) -> bool,
-    ) -> (&'static str, Value) {
+    ) -> Value {
         let place = self.replay.seen().place;
         let marks: Vec<_> = place.new_marks().collect();
         let is_marked = marks.iter().any(|one| is_asked(one.mark.name()));
         let (reason, description) = match (place.halt(), found) {
             (_, Found::Interrupted) => ("pause", "Paused".to_owned()),
             (Halt::Failed(_), _) => ("exception", "The run ended with an error".to_owned()),
-            _ if found == Found::Yes && is_marked && motion != Motion::Restart => {
+            _ if found == Found::Yes && is_marked => {
                 ("exception", "Something is marked".to_owned())
             }
             _ if !hit.is_empty() && found == Found::Yes => {
@@ -172,7 +179,7 @@ impl Running {
         if !hit.is_empty() {
             body["hitBreakpointIds"] = json!(hit);
         }
-        ("stopped", body)
+        body
     }
 
     /// What the run ended with.

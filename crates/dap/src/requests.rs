@@ -3,13 +3,15 @@
 use lamplight_debug::Mark;
 use serde_json::{Value, json};
 
-use crate::answer::{Adapter, Failed, Turn};
+use crate::answer::{Failed, Turn};
 use crate::motion::Motion;
+use crate::numbers::Counting;
+use crate::session::Session;
 
 /// A request that is known.
 pub(crate) struct Request {
-    name: &'static str,
-    pub run: fn(&mut Adapter, &mut Turn<'_>) -> Result<Value, Failed>,
+    pub name: &'static str,
+    pub run: fn(&mut Session, &mut Turn<'_>) -> Result<Value, Failed>,
 }
 
 /// All requests by name.
@@ -17,39 +19,34 @@ const REQUESTS: [Request; 27] = [
     Request { name: "initialize", run: initialize },
     Request { name: "launch", run: launch },
     Request { name: "attach", run: attach },
-    Request { name: "setBreakpoints", run: |adapter, turn| adapter.session.set_breakpoints(turn) },
+    Request { name: "setBreakpoints", run: |session, turn| session.set_breakpoints(turn) },
     Request { name: "setFunctionBreakpoints", run: no_breakpoints },
-    Request {
-        name: "setExceptionBreakpoints",
-        run: |adapter, turn| adapter.session.set_marks(turn),
-    },
+    Request { name: "setExceptionBreakpoints", run: |session, turn| session.set_marks(turn) },
     Request {
         name: "breakpointLocations",
-        run: |adapter, turn| adapter.session.breakpoint_locations(turn),
+        run: |session, turn| session.breakpoint_locations(turn),
     },
     Request { name: "configurationDone", run: configuration_done },
-    Request { name: "threads", run: |adapter, _| adapter.session.threads() },
-    Request { name: "stackTrace", run: |adapter, turn| adapter.session.stack_trace(turn) },
-    Request { name: "scopes", run: |adapter, turn| adapter.session.scopes(turn) },
-    Request { name: "variables", run: |adapter, turn| adapter.session.variables(turn) },
-    Request { name: "evaluate", run: |adapter, turn| adapter.session.evaluate(turn) },
-    Request { name: "exceptionInfo", run: |adapter, _| adapter.session.exception_info() },
-    Request { name: "source", run: |adapter, turn| adapter.session.source(turn) },
-    Request { name: "loadedSources", run: |adapter, turn| adapter.session.loaded_sources(turn) },
-    Request { name: "continue", run: |adapter, _| adapter.session.begin(Motion::Continue) },
-    Request { name: "next", run: |adapter, _| adapter.session.begin(Motion::Next) },
-    Request { name: "stepIn", run: |adapter, _| adapter.session.begin(Motion::In) },
-    Request { name: "stepOut", run: |adapter, _| adapter.session.begin(Motion::Out) },
-    Request { name: "stepBack", run: |adapter, _| adapter.session.begin(Motion::Back) },
-    Request {
-        name: "reverseContinue",
-        run: |adapter, _| adapter.session.begin(Motion::ContinueBack),
-    },
-    Request { name: "restart", run: |adapter, _| adapter.session.begin(Motion::Restart) },
-    Request { name: "pause", run: |adapter, _| adapter.session.running().map(|_| Value::Null) },
+    Request { name: "threads", run: |session, _| session.threads() },
+    Request { name: "stackTrace", run: |session, turn| session.stack_trace(turn) },
+    Request { name: "scopes", run: |session, turn| session.scopes(turn) },
+    Request { name: "variables", run: |session, turn| session.variables(turn) },
+    Request { name: "evaluate", run: |session, turn| session.evaluate(turn) },
+    Request { name: "exceptionInfo", run: |session, _| session.exception_info() },
+    Request { name: "source", run: |session, turn| session.source(turn) },
+    Request { name: "loadedSources", run: |session, turn| session.loaded_sources(turn) },
+    Request { name: "continue", run: |session, _| session.begin(Motion::Continue) },
+    Request { name: "next", run: |session, _| session.begin(Motion::Next) },
+    Request { name: "stepIn", run: |session, _| session.begin(Motion::In) },
+    Request { name: "stepOut", run: |session, _| session.begin(Motion::Out) },
+    Request { name: "stepBack", run: |session, _| session.begin(Motion::Back) },
+    Request { name: "reverseContinue", run: |session, _| session.begin(Motion::ContinueBack) },
+    Request { name: "restart", run: |session, turn| session.restart(turn) },
+    // A run that was interrupted has stopped by now.
+    Request { name: "pause", run: |session, _| session.running().map(|_| Value::Null) },
     Request { name: "terminate", run: terminate },
     Request { name: "disconnect", run: disconnect },
-    Request { name: "cancel", run: |_, _| Ok(Value::Null) },
+    Request { name: "cancel", run: cancel },
 ];
 
 /// The request of a name.
@@ -57,10 +54,12 @@ pub(crate) fn find(name: &str) -> Option<&'static Request> {
     REQUESTS.iter().find(|request| request.name == name)
 }
 
-fn initialize(adapter: &mut Adapter, turn: &mut Turn<'_>) -> Result<Value, Failed> {
+fn initialize(session: &mut Session, turn: &mut Turn<'_>) -> Result<Value, Failed> {
     let starts_at_1 = |name: &str| turn.arguments.get(name).and_then(Value::as_bool);
-    adapter.session.first_line = u32::from(starts_at_1("linesStartAt1").unwrap_or(true));
-    adapter.session.first_column = u32::from(starts_at_1("columnsStartAt1").unwrap_or(true));
+    session.counting = Counting {
+        line: u32::from(starts_at_1("linesStartAt1").unwrap_or(true)),
+        column: u32::from(starts_at_1("columnsStartAt1").unwrap_or(true)),
+    };
     let filter = |(name, label): (&str, &str)| json!({ "filter": name, "label": label });
     let marks: Vec<Value> = Mark::KINDS.into_iter().map(filter).collect();
     Ok(json!({
@@ -75,49 +74,43 @@ fn initialize(adapter: &mut Adapter, turn: &mut Turn<'_>) -> Result<Value, Faile
         "supportsRestartRequest": true,
         "supportsStepBack": true,
         "supportsTerminateRequest": true,
-        "supportsCancelRequest": true,
         "exceptionBreakpointFilters": marks,
     }))
 }
 
-fn launch(adapter: &mut Adapter, turn: &mut Turn<'_>) -> Result<Value, Failed> {
-    let launched = match turn.host.launch(turn.arguments) {
-        Ok(launched) => launched,
-        Err(refusal) => {
-            let output = json!({ "category": "stderr", "output": refusal.output });
-            turn.before.push(("output", output));
-            return Err(refusal.message);
-        }
-    };
-    adapter.session.start(launched, turn)?;
+fn launch(session: &mut Session, turn: &mut Turn<'_>) -> Result<Value, Failed> {
+    session.launch(turn.arguments, turn)?;
     turn.event("initialized", Value::Null);
     Ok(Value::Null)
 }
 
-fn attach(_: &mut Adapter, _: &mut Turn<'_>) -> Result<Value, Failed> {
+fn attach(_: &mut Session, _: &mut Turn<'_>) -> Result<Value, Failed> {
     Err("a shader does not run anywhere to be attached to: use `launch`".to_owned())
 }
 
-fn no_breakpoints(_: &mut Adapter, turn: &mut Turn<'_>) -> Result<Value, Failed> {
+fn no_breakpoints(_: &mut Session, turn: &mut Turn<'_>) -> Result<Value, Failed> {
     let asked = turn.arguments.get("breakpoints").and_then(Value::as_array);
     let none = json!({ "verified": false, "message": "breakpoints are set on lines" });
     Ok(json!({ "breakpoints": vec![none; asked.map_or(0, Vec::len)] }))
 }
 
-fn configuration_done(adapter: &mut Adapter, _: &mut Turn<'_>) -> Result<Value, Failed> {
-    let stops = adapter.session.stops_on_entry;
-    adapter.session.begin(if stops { Motion::Entry } else { Motion::Continue })?;
-    Ok(Value::Null)
+fn configuration_done(session: &mut Session, _: &mut Turn<'_>) -> Result<Value, Failed> {
+    session.set_off()
 }
 
-fn terminate(adapter: &mut Adapter, turn: &mut Turn<'_>) -> Result<Value, Failed> {
-    adapter.session.end();
+fn terminate(session: &mut Session, turn: &mut Turn<'_>) -> Result<Value, Failed> {
+    session.end();
     turn.event("terminated", Value::Null);
     Ok(Value::Null)
 }
 
-fn disconnect(adapter: &mut Adapter, _: &mut Turn<'_>) -> Result<Value, Failed> {
-    adapter.session.end();
-    adapter.is_ended = true;
+fn disconnect(session: &mut Session, _: &mut Turn<'_>) -> Result<Value, Failed> {
+    session.end();
+    session.is_ended = true;
     Ok(Value::Null)
+}
+
+/// A request is answered before its run goes on, so none waits that could be cancelled.
+fn cancel(_: &mut Session, _: &mut Turn<'_>) -> Result<Value, Failed> {
+    Err("no request waits that could be cancelled: `pause` stops a run".to_owned())
 }

@@ -7,13 +7,16 @@ use serde_json::{Value, json};
 use crate::answer::{Failed, Host, Turn};
 use crate::session::{Running, Session};
 
+/// The number of the first row that is an import and no call. No stack is as deep.
+const LABELS: usize = 1_000_000;
+
 impl Session {
     pub fn stack_trace(&self, turn: &Turn<'_>) -> Result<Value, Failed> {
         let run = self.running()?;
         let rows = run.stack(self, turn.host);
-        let number = |name: &str| turn.arguments.get(name).and_then(Value::as_u64).unwrap_or(0);
-        let (start, levels) = (number("startFrame") as usize, number("levels") as usize);
-        let levels = if levels == 0 { rows.len() } else { levels };
+        let start = turn.number("startFrame")?.unwrap_or(0) as usize;
+        let levels = turn.number("levels")?.filter(|levels| *levels > 0);
+        let levels = levels.map_or(rows.len(), |levels| levels as usize);
         let total = rows.len();
         let shown: Vec<Value> = rows.into_iter().skip(start).take(levels).collect();
         Ok(json!({ "stackFrames": shown, "totalFrames": total }))
@@ -62,36 +65,38 @@ impl Running {
     }
 
     fn place(&self, row: &mut Value, span: Span, session: &Session, host: &dyn Host) {
-        let position = |byte: u32| self.sources.position(span.source, byte as usize);
+        let position = |byte: u32| {
+            let (line, column) = self.sources.position(span.source, byte as usize);
+            let counting = session.counting;
+            (counting.line(line as u32), counting.column(column as u32))
+        };
         let ((line, column), (end, last)) = (position(span.start), position(span.end));
-        row["line"] = json!(line as u32 + session.first_line - 1);
-        row["column"] = json!(column as u32 + session.first_column - 1);
-        row["endLine"] = json!(end as u32 + session.first_line - 1);
-        row["endColumn"] = json!(last as u32 + session.first_column - 1);
+        row["line"] = json!(line);
+        row["column"] = json!(column);
+        row["endLine"] = json!(end);
+        row["endColumn"] = json!(last);
         row["source"] = self.source_json(span.source, host);
     }
 
-    /// The imports that lead from the text of a caller to that of what it calls.
+    /// The imports that lead from the text of a caller to that of what it calls, the nearest to the
+    /// latter first. Where the caller is not among those that led there first, all are shown.
     fn import_rows(
         &self,
         rows: &mut Vec<Value>,
-        (from, to): (SourceId, SourceId),
+        (caller, called): (SourceId, SourceId),
         session: &Session,
         host: &dyn Host,
     ) {
-        if from == to {
-            return;
-        }
-        let mut last = to;
-        for (source, line) in self.imports.way(from, to) {
+        let mut last = called;
+        while last != caller
+            && let Some(import) = self.imports.get(&last)
+        {
             let name = format!("{}, read by", self.sources.get(last).path);
-            let id = 1_000_000 + rows.len();
-            rows.push(json!({
-                "id": id, "name": name, "presentationHint": "label",
-                "line": line + session.first_line - 1, "column": session.first_column,
-                "source": self.source_json(source, host),
-            }));
-            last = source;
+            let id = LABELS + rows.len();
+            let mut row = json!({ "id": id, "name": name, "presentationHint": "label" });
+            self.place(&mut row, *import, session, host);
+            rows.push(row);
+            last = import.source;
         }
     }
 }

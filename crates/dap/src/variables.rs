@@ -1,7 +1,7 @@
 //! Scopes, variables as trees, and expressions.
 
 use lamplight_debug::{Frame, Halt, Marked, Scalar, Seen, Value as Traced};
-use lamplight_eval::{Shape, SlotKind, VariableKind, VariablePlace};
+use lamplight_eval::{Shape, ShapePart, SlotKind, VariableKind, VariablePlace};
 use serde_json::{Value, json};
 
 use crate::answer::{Failed, Turn};
@@ -44,77 +44,20 @@ impl Part {
 
     /// Its parts by name; of an array those from a number on.
     fn parts(&self, start: u32, count: u32) -> Vec<(String, Self)> {
-        let part = |name: String, shape: &Shape, offset: u32| {
-            let dot = if name.starts_with('[') { "" } else { "." };
-            let path = format!("{}{dot}{name}", self.path);
-            let first = self.first.saturating_add(offset);
-            (name, Self { path, shape: shape.clone(), place: self.place, first })
-        };
-        match &self.shape {
-            Shape::Scalar(_) => Vec::new(),
-            Shape::Vector(size, kind) => ["x", "y", "z", "w"]
-                .into_iter()
-                .take(*size as usize)
-                .zip(0..)
-                .map(|(name, at)| part(name.to_owned(), &Shape::Scalar(*kind), at))
-                .collect(),
-            Shape::Matrix { columns, rows } => {
-                let column = Shape::Vector(*rows, SlotKind::Float);
-                (0..*columns).map(|at| part(format!("[{at}]"), &column, at * rows)).collect()
-            }
-            Shape::Array(size, element) => {
-                let end = start.saturating_add(count).min(*size);
-                let scalars = element.scalars();
-                (start..end)
-                    .map(|at| part(format!("[{at}]"), element, at.saturating_mul(scalars)))
-                    .collect()
-            }
-            Shape::Struct(members) => {
-                let mut offset = 0;
-                let mut member = |(name, shape): &(String, Shape)| {
-                    let own = part(name.clone(), shape, offset);
-                    offset += shape.scalars();
-                    own
-                };
-                members.iter().map(&mut member).collect()
-            }
-        }
+        let parts = self.shape.parts(start..start.saturating_add(count));
+        parts.map(|part| (part.name.clone(), self.part(part))).collect()
     }
 
-    /// The part that a path such as `.position.x` or `[2]` leads to.
-    fn follow(&self, path: &str) -> Option<Self> {
-        let path = path.trim();
-        if path.is_empty() {
-            return Some(self.clone());
-        }
-        let (name, rest) = match path.strip_prefix('[') {
-            Some(rest) => {
-                let (index, rest) = rest.split_once(']')?;
-                let index = index.trim().trim_end_matches(['u', 'i']);
-                (format!("[{}]", index.parse::<u32>().ok()?), rest)
-            }
-            None => {
-                let path = path.strip_prefix('.')?.trim_start();
-                let end = path.find(['.', '[']).unwrap_or(path.len());
-                (path[..end].trim().to_owned(), &path[end..])
-            }
-        };
-        let name = match (&self.shape, name.as_str()) {
-            (Shape::Vector(..), "r") => "x".to_owned(),
-            (Shape::Vector(..), "g") => "y".to_owned(),
-            (Shape::Vector(..), "b") => "z".to_owned(),
-            (Shape::Vector(..), "a") => "w".to_owned(),
-            _ => name,
-        };
-        let index = name.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')?.parse().ok());
-        let parts = self.parts(index.unwrap_or(0), if index.is_some() { 1 } else { ROWS });
-        parts.into_iter().find(|(known, _)| *known == name)?.1.follow(rest)
+    fn part(&self, ShapePart { name, first, shape }: ShapePart) -> Self {
+        let dot = if name.starts_with('[') { "" } else { "." };
+        let path = format!("{}{dot}{name}", self.path);
+        Self { path, shape, place: self.place, first: self.first.saturating_add(first) }
     }
 }
 
 impl Session {
     pub fn scopes(&mut self, turn: &Turn<'_>) -> Result<Value, Failed> {
-        let frame = turn.arguments.get("frameId").and_then(Value::as_i64).unwrap_or(0);
+        let frame = turn.number("frameId")?.ok_or("`scopes` asks for a `frameId`")?;
         let run = self.running_mut()?;
         let scopes = run.scopes_of(frame)?;
         let mut rows = Vec::new();
@@ -129,11 +72,11 @@ impl Session {
     }
 
     pub fn variables(&mut self, turn: &Turn<'_>) -> Result<Value, Failed> {
-        let number = |name: &str| turn.arguments.get(name).and_then(Value::as_u64).unwrap_or(0);
-        let (reference, start) = (number("variablesReference"), number("start") as u32);
-        let count = match number("count") {
+        let number = |name: &str| turn.number(name).map(Option::unwrap_or_default);
+        let (reference, start) = (number("variablesReference")?, number("start")?);
+        let count = match number("count")? {
             0 => ROWS,
-            count => count.min(u64::from(ROWS)) as u32,
+            count => count.min(ROWS),
         };
         let run = self.running_mut()?;
         let index = (reference as usize).checked_sub(1);
@@ -163,7 +106,7 @@ impl Session {
 
     pub fn evaluate(&mut self, turn: &Turn<'_>) -> Result<Value, Failed> {
         let text = turn.arguments.get("expression").and_then(Value::as_str).unwrap_or_default();
-        let frame = turn.arguments.get("frameId").and_then(Value::as_i64);
+        let frame = turn.number("frameId")?;
         let run = self.running_mut()?;
         let mut row = run.expression_row(text.trim(), frame)?;
         let value = row["value"].take();
@@ -181,17 +124,17 @@ type Scope = (&'static str, &'static str, Handle, usize);
 
 impl Running {
     /// The frame of a number; without one the innermost.
-    fn frame(&self, id: Option<i64>) -> Result<(usize, Frame), Failed> {
+    fn frame(&self, id: Option<u32>) -> Result<(usize, Frame), Failed> {
         let frames = self.replay.seen().place.frames();
         let depth = match id {
-            Some(id) => usize::try_from(id - 1).ok(),
+            Some(id) => (id as usize).checked_sub(1),
             None => frames.len().checked_sub(1),
         };
         let found = depth.and_then(|depth| Some((depth, frames.get(depth)?.clone())));
         found.ok_or_else(|| "the stack has no such frame".to_owned())
     }
 
-    fn scopes_of(&self, id: i64) -> Result<Vec<Scope>, Failed> {
+    fn scopes_of(&self, id: u32) -> Result<Vec<Scope>, Failed> {
         let (depth, frame) = self.frame(Some(id))?;
         let (subject, place) = (self.replay.subject(), self.replay.seen().place);
         let visible = subject.visible(frame.function, frame.statement);
@@ -315,7 +258,7 @@ impl Running {
     }
 
     /// The row of an expression in a frame: a variable and its parts, or what WGSL makes of it.
-    fn expression_row(&mut self, text: &str, frame: Option<i64>) -> Result<Value, Failed> {
+    fn expression_row(&mut self, text: &str, frame: Option<u32>) -> Result<Value, Failed> {
         let (_, frame) = self.frame(frame)?;
         let subject = self.replay.subject();
         let end = text.find(['.', '[']).unwrap_or(text.len());
@@ -323,8 +266,9 @@ impl Running {
         let variables = subject.program.variables();
         let named = visible.iter().filter_map(|index| variables.get(*index));
         let part = { named }.find(|one| one.name == text[..end].trim()).and_then(|one| {
-            let (path, shape, place) = (one.name.clone(), one.shape.clone(), one.place);
-            Part { path, shape, place, first: 0 }.follow(&text[end..])
+            let part = one.shape.follow(&text[end..]).ok()?;
+            let path = format!("{}{}", one.name, part.name);
+            Some(Part { path, shape: part.shape, place: one.place, first: part.first })
         });
         if let Some(part) = part {
             return self.part_row("", part);

@@ -64,12 +64,19 @@ const ABOUT_FILES: [&str; 10] = [
 
 /// The command line, in whose help `debug` has no options about files of pictures.
 pub fn without_files(command: clap::Command) -> clap::Command {
-    command.mut_subcommand("debug", |debug| {
-        debug.mut_args(|argument| {
-            let is_hidden = ABOUT_FILES.contains(&argument.get_id().as_str());
-            argument.hide(is_hidden)
-        })
+    command.mut_subcommand("debug", hide_files)
+}
+
+fn hide_files(debug: clap::Command) -> clap::Command {
+    debug.mut_args(|argument| {
+        let is_hidden = ABOUT_FILES.contains(&argument.get_id().as_str());
+        argument.hide(is_hidden)
     })
+}
+
+/// The options by themselves, as a debug adapter reads them.
+pub fn launch_command() -> clap::Command {
+    hide_files(Arguments::augment_args(clap::Command::new("launch")))
 }
 
 pub fn run_debug(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
