@@ -15,6 +15,7 @@ use lamplight::picture::{HeatMap, Shot, Surroundings};
 use lamplight::resolve::{self, Packages};
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
+use serde_json::{Value, json};
 
 type Outcome = Result<(), Failed>;
 
@@ -25,6 +26,9 @@ pub fn tests() -> Vec<Trial> {
     let others = [
         Trial::test("heat::of_a_preset", of_a_preset as fn() -> Outcome),
         Trial::test("heat::picture_of_the_guide", picture_of_the_guide as fn() -> Outcome),
+        Trial::test("heat::blended", blended as fn() -> Outcome),
+        Trial::test("heat::cost_of_turns", cost_of_turns as fn() -> Outcome),
+        Trial::test("heat::error_of_a_difference", error_of_a_difference as fn() -> Outcome),
         Trial::test("heat::refused", refused as fn() -> Outcome),
     ];
     rows.chain(others).collect()
@@ -277,12 +281,138 @@ fn heat(row: &Row) -> Result<HeatMap, Diagnostics> {
 
 /// Each pixel has its number.
 fn known(row: &'static Row) -> Outcome {
-    let found = on_thread(|| heat(row)).ok_or("the renderer stopped")?;
-    let map = found.map_err(|problems| format!("{problems:?}"))?;
+    let map = measured(row)?;
     for (x, y) in (0..SIZE).flat_map(|y| (0..SIZE).map(move |x| (x, y))) {
         let (found, expected) = (map.value([x, y]).map(|value| value[0]), (row.expected)(x, y));
         if found != expected {
             return Err(format!("pixel {x},{y} has {found:?}, not {expected:?}").into());
+        }
+    }
+    Ok(())
+}
+
+fn measured(row: &'static Row) -> Result<HeatMap, Failed> {
+    let found = on_thread(|| heat(row)).ok_or("the renderer stopped")?;
+    Ok(found.map_err(|problems| format!("{problems:?}"))?)
+}
+
+/// Each turn of a loop costs the same, and the part of the loop grows with the number of its turns: a
+/// row has as many as its number.
+fn cost_of_turns() -> Outcome {
+    const ROW: Row =
+        Row { name: "cost", file: "own.wesl", text: WGSL, show: "cost", expected: |_, _| None };
+    let map = measured(&ROW)?;
+    let cost = |x, y| map.value([x, y]).map_or(f32::NAN, |value| value[0]);
+    for x in [0, 15] {
+        let (none, turn) = (cost(x, 0), cost(x, 1) - cost(x, 0));
+        let is_so = (0..SIZE).all(|y| cost(x, y) == none + turn * y as f32);
+        // A turn adds to `turns` and to `i`, compares and branches; the fragment has five operations.
+        if !is_so || turn < 4.0 || none < 5.0 {
+            let all: Vec<f32> = (0..SIZE).map(|y| cost(x, y)).collect();
+            return Err(format!("column {x}: {all:?}").into());
+        }
+    }
+    // The branch that only the right half takes.
+    if cost(15, 3) <= cost(0, 3) {
+        return Err("a branch that is taken costs nothing".into());
+    }
+    Ok(())
+}
+
+/// A third is added to 2^y, whose last bit is 2^(y - 23), and 2^y is taken away again. The sum is rounded,
+/// by WGSL to either side; the difference is exact. So a bound is at least what f32 is wrong by, and at
+/// most two last bits.
+fn error_of_a_difference() -> Outcome {
+    const ROW: Row = Row {
+        name: "difference",
+        file: "own.wesl",
+        text: "@fragment fn main(@builtin(position) at: vec4f) -> @location(0) vec4f {
+            let large = f32(1u << u32(at.y));
+            let sum = large + 0.33333334;
+            return vec4f(sum - large);
+        }",
+        show: "error",
+        expected: |_, _| None,
+    };
+    let map = measured(&ROW)?;
+    // The sum of 0.33333334 in f32, which is this number, and of a power of two is known in f64.
+    let third = f64::from(0.333_333_34_f32);
+    for y in 2..SIZE {
+        let large = f64::from(1_u32 << y);
+        let wrong = (f64::from((large + third) as f32) - large - third).abs();
+        let found = map.value([5, y]).map_or(f32::NAN, |value| value[0]);
+        let most = 2.0 * f64::from(y as i32 - 23).exp2();
+        if wrong == 0.0 || f64::from(found) < wrong || f64::from(found) > most {
+            return Err(format!("row {y}: {found} is not between {wrong} and {most}").into());
+        }
+    }
+    Ok(())
+}
+
+/// Three squares, one behind the other: an opaque one, of which a blended one covers the left half, and
+/// a blended one behind it. Each pixel has the number of the nearest.
+fn blended() -> Outcome {
+    let corners = [[-1.0_f32, 1.0, 0.0], [-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0]];
+    let mut buffer: Vec<u8> = corners.iter().flatten().flat_map(|one| one.to_le_bytes()).collect();
+    buffer.extend([0_u16, 1, 2, 0, 2, 3].iter().flat_map(|index| index.to_le_bytes()));
+    let square = |material: u32| {
+        json!({ "primitives": [{
+        "attributes": { "POSITION": 0 }, "indices": 1, "material": material,
+    }] })
+    };
+    let material = |red: f64, alpha: f64, mode: &str| {
+        json!({
+            "alphaMode": mode,
+            "pbrMetallicRoughness": { "baseColorFactor": [red, 0.0, 0.0, alpha], "metallicFactor": 0.0 },
+        })
+    };
+    let document = json!({
+        "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0, 1, 2] }],
+        "nodes": [
+            { "mesh": 0 },
+            { "mesh": 1, "translation": [-0.5, 0.0, 0.001], "scale": [0.5, 1.0, 1.0] },
+            { "mesh": 2, "translation": [0.0, 0.0, -0.001] },
+        ],
+        "meshes": [square(0), square(1), square(2)],
+        "materials": [
+            material(0.5, 1.0, "OPAQUE"), material(0.25, 0.5, "BLEND"), material(0.75, 0.5, "BLEND"),
+        ],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
+              "min": [-1, -1, 0], "max": [1, 1, 0] },
+            { "bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR" },
+        ],
+        "bufferViews": [
+            { "buffer": 0, "byteLength": 48 }, { "buffer": 0, "byteOffset": 48, "byteLength": 12 },
+        ],
+        "buffers": [{ "byteLength": buffer.len(), "uri": "squares.bin" }],
+    });
+    let scratch = tempfile::tempdir()?;
+    std::fs::write(scratch.path().join("squares.bin"), buffer)?;
+    std::fs::write(scratch.path().join("squares.gltf"), document.to_string())?;
+    let model = ["--model", "squares.gltf", "--camera", "0,0,5,0,0,0", "--size", "32x32"];
+    let shown = [&model[..], &["--show", "base.r", "--json", "--out", "heat.png"]].concat();
+    let (said, errors) = render(&shown, scratch.path())?;
+    let found: Value =
+        serde_json::from_str(&said).map_err(|error| format!("{error}: {said}{errors}"))?;
+    let number = |name: &str| found[name].as_f64().unwrap_or(f64::NAN);
+    // The halves are as large as each other.
+    let is_right = (number("lowest"), number("highest")) == (0.25, 0.5)
+        && number("pixels") > 50.0
+        && 2.0 * number("at_highest") == number("pixels");
+    if !is_right {
+        return Err(format!("unexpected: {found}").into());
+    }
+    // The debugger shows the same fragment: the left half, and the right one.
+    for (pixel, color) in [("12,16", "0.25 0 0 0.5"), ("20,16", "0.5 0 0 1")] {
+        let asked = [&["debug"], &model[..], &["--pixel", pixel]].concat();
+        let output = Command::new(LAMPLIGHT).args(asked).current_dir(scratch.path()).output()?;
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let is_given =
+            |line: &str| line.split_once("in.color").is_some_and(|(_, rest)| rest.trim() == color);
+        if !said.lines().any(is_given) {
+            let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+            return Err(format!("pixel {pixel}: {said}{errors}").into());
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! Heat maps: a number of each pixel in the place of its colour, with a scale.
 
-use lamplight_diagnostic::Diagnostics;
+use lamplight_diagnostic::{Diagnostic, Diagnostics};
 use lamplight_execute::kernel::SENTINEL;
 use lamplight_execute::raster::{Measure, Measured, Measuring, draw_frames};
 
@@ -61,35 +61,64 @@ const RAMP: [[f64; 3]; 6] = [
 const LEGEND: u32 = 44;
 
 impl PreparedPass {
-    /// Measures the fragment that each pixel shows.
+    /// Measures the fragment that each pixel shows: the nearest one, also where it is blended over
+    /// others.
     ///
     /// # Errors
     /// A name that no variable has, and those of the stages.
     pub fn measure(&self, measure: &Measure, shot: &Shot) -> Result<HeatMap, Diagnostics> {
-        let one = |problem| vec![problem];
         let size = shot.size;
         let mut values = vec![None; size[0] as usize * size[1] as usize];
         let mut components = 1;
         for slice in std::iter::once(self).chain(&self.farther) {
-            let stage = slice.stages.fragment.as_ref().ok_or_else(|| vec![no_frame()])?;
-            let view = slice.eye_view([0.0; 2], size).map_err(one)?;
-            let (items, views) = (slice.items().collect::<Vec<_>>(), std::slice::from_ref(&view));
-            // As its author wrote it: what is drawn on devices has counters in its loops.
-            let entry = EntryPoint { module: &stage.written.module, entry: stage.entry };
-            let drawing = slice.drawing(&items, views, size, Some((entry, 1)));
-            let measuring = Measuring::new(&drawing, measure).map_err(one)?;
-            components = measuring.components() as usize;
-            let frames = draw_frames(&drawing, &measuring).map_err(one)?;
-            let target = frames.first().and_then(|frame| frame.targets.first());
-            let (words, _) = target.map_or(&[][..], Vec::as_slice).as_chunks::<4>();
-            for (value, words) in values.iter_mut().zip(words) {
-                if value.is_none() && *words != [SENTINEL; 4] {
-                    *value = Some(Measured::of_words(*words));
-                }
+            let mut shown = slice.measured(measure, size).map_err(|problem| vec![problem])?;
+            if let Some(blended) = &slice.blended {
+                shown.cover(blended.measured(measure, size).map_err(|problem| vec![problem])?);
+            }
+            components = shown.components;
+            for (value, (own, _)) in values.iter_mut().zip(shown.pixels) {
+                *value = value.or(own);
             }
         }
         let is_logarithmic = *measure == Measure::Error;
         Ok(HeatMap { size, values, components, is_logarithmic })
+    }
+
+    /// Measures the nearest fragment of each pixel, of the objects of this pass alone.
+    fn measured(&self, measure: &Measure, size: [u32; 2]) -> Result<Layer, Diagnostic> {
+        let stage = self.stages.fragment.as_ref().ok_or_else(no_frame)?;
+        let view = self.eye_view([0.0; 2], size)?;
+        let (items, views) = (self.items().collect::<Vec<_>>(), std::slice::from_ref(&view));
+        // As its author wrote it: what is drawn on devices has counters in its loops.
+        let entry = EntryPoint { module: &stage.written.module, entry: stage.entry };
+        let drawing = self.drawing(&items, views, size, Some((entry, 1)));
+        let measuring = Measuring::new(&drawing, measure)?;
+        let frames = draw_frames(&drawing, &measuring)?;
+        let frame = frames.first().ok_or_else(no_frame)?;
+        let (words, _) = frame.targets.first().map_or(&[][..], Vec::as_slice).as_chunks::<4>();
+        let pixel = |(at, words): (usize, &[u32; 4])| {
+            let value = (*words != [SENTINEL; 4]).then(|| Measured::of_words(*words));
+            (value, frame.depth.get(at).copied().unwrap_or(1.0))
+        };
+        let pixels = words.iter().enumerate().map(pixel).collect();
+        Ok(Layer { pixels, components: measuring.components() as usize })
+    }
+}
+
+/// What was drawn of some objects: of each pixel what it has, if anything, and its depth.
+struct Layer {
+    pixels: Vec<(Option<Measured>, f32)>,
+    components: usize,
+}
+
+impl Layer {
+    /// Draws over it what is nearer.
+    fn cover(&mut self, other: Self) {
+        for (own, other) in self.pixels.iter_mut().zip(other.pixels) {
+            if other.0.is_some() && (own.0.is_none() || other.1 < own.1) {
+                *own = other;
+            }
+        }
     }
 }
 

@@ -233,10 +233,14 @@ impl PreparedPass {
             return Err(vec![Diagnostic::error(codes::PICTURE_INVALID, message).note(help)]);
         }
         let mut found = Vec::new();
-        // Blended objects have a stage of their own.
-        let slices = std::iter::once(self).chain(&self.farther);
-        for slice in slices.flat_map(|slice| [Some(slice), slice.blended.as_deref()]).flatten() {
-            found.extend(slice.own_fragments_at(pixel, shot).map_err(|problem| vec![problem])?);
+        for slice in std::iter::once(self).chain(&self.farther) {
+            let mut own = slice.own_fragments_at(pixel, shot).map_err(|problem| vec![problem])?;
+            // Blended objects have a stage of their own, and are before the others or behind them.
+            if let Some(blended) = &slice.blended {
+                own.extend(blended.own_fragments_at(pixel, shot).map_err(|problem| vec![problem])?);
+                own.sort_by(|one, other| one.fragment.depth.total_cmp(&other.fragment.depth));
+            }
+            found.extend(own);
         }
         Ok(found)
     }

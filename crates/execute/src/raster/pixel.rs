@@ -19,6 +19,8 @@ pub struct PixelFragment {
     pub lane: usize,
     /// What the fragment stage reads.
     pub resources: Resources,
+    /// Its depth, by which nearer fragments hide others.
+    pub depth: f32,
 }
 
 /// The fragments that cover the middle of a pixel in a view. With the depth test the nearest one is
@@ -48,13 +50,14 @@ pub fn fragments_at(
         false => found.reverse(),
     }
     let lane = ((x & 1) + 2 * (y & 1)) as usize;
-    let fragment = |(_, triangle): (f32, _)| {
+    let fragment = |(depth, triangle): (f32, _)| {
         let pixels = quad_pixels(x & !1, y & !1);
         let quad = CoveredQuad { triangle, pixels, covered: [true; 4] };
         let item = triangle.item;
         let buffers = item_buffers(drawing, view, &drawing.items[item]);
         let resources = Resources { buffers, ..textures.clone() };
-        PixelFragment { item, arguments: screen.quad(&quad).arguments, lane, resources }
+        let arguments = screen.quad(&quad).arguments;
+        PixelFragment { item, arguments, lane, resources, depth }
     };
     Ok(found.into_iter().map(fragment).collect())
 }
