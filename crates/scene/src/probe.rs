@@ -1,6 +1,7 @@
 //! Environments made ready for shading: spherical harmonics and filtered cube maps.
 
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
+use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -134,21 +135,111 @@ pub fn prefilter(sky: &Sky<'_>, exponent: f64, size: usize, rows: usize) -> Cube
     // Directions with a cosine below this are left out: their weight is below a billionth of the
     // largest, or they are behind the lobe.
     let outside = if exponent > 0.0 { 1e-9_f64.powf(exponent.recip()) } else { 0.0 };
+    let power = power_of(exponent);
     let texel = |index: usize| {
         let (face, row, column) = (index / (size * size), index / size % size, index % size);
         let n = CubeMap::direction(size, face, column, row);
         let (mut sum, mut all) = (DVec3::ZERO, 0.0);
-        for (direction, solid_angle, radiance) in &seen {
-            let cosine = n.dot(*direction).max(0.0);
-            // Most directions are outside of the lobe, and a power takes most of the time.
-            if cosine < outside {
-                continue;
+        // Most directions are outside of the lobe: of a row, only its columns near it are looked at.
+        for row in seen.chunks((2 * rows).max(1)) {
+            for columns in columns_near(n, row[0].0, outside, row.len()) {
+                for (direction, solid_angle, radiance) in &row[columns] {
+                    let cosine = n.dot(*direction).max(0.0);
+                    if cosine < outside {
+                        continue;
+                    }
+                    let weight = power(cosine) * solid_angle;
+                    sum += *radiance * weight;
+                    all += weight;
+                }
             }
-            let weight = cosine.powf(exponent) * solid_angle;
-            sum += *radiance * weight;
-            all += weight;
         }
         sum / all
     };
     CubeMap { size, texels: (0..6 * size * size).into_par_iter().map(texel).collect() }
+}
+
+/// The power of a cosine. A whole one is a few products, which take a fraction of the time.
+fn power_of(exponent: f64) -> impl Fn(f64) -> f64 {
+    let whole = exponent as u32;
+    let is_whole = f64::from(whole) == exponent;
+    move |cosine: f64| {
+        if !is_whole {
+            return cosine.powf(exponent);
+        }
+        let (mut product, mut square, mut rest) = (1.0, cosine, whole);
+        while rest > 0 {
+            if rest % 2 == 1 {
+                product *= square;
+            }
+            square *= square;
+            rest /= 2;
+        }
+        product
+    }
+}
+
+/// The columns of a row of [`directions`] whose cosine to `n` may be at least `least`, and a few more:
+/// at most two ranges in order. `first` is the direction of the row's first column.
+fn columns_near(n: DVec3, first: DVec3, least: f64, count: usize) -> [Range<usize>; 2] {
+    let (all, none) = ([0..count, 0..0], [0..0, 0..0]);
+    let round = n.x.hypot(n.z) * first.x.hypot(first.z);
+    // The cosine is this plus `round` times that of the angle between the columns.
+    let along = n.y * first.y;
+    if along + round < least - 1e-9 {
+        return none;
+    }
+    if along - round >= least || round < 1e-9 {
+        return all;
+    }
+    let half = ((least - along) / round).clamp(-1.0, 1.0).acos();
+    let step = TAU / count as f64;
+    let place = |angle: f64| angle / step - 0.5;
+    let middle = n.z.atan2(n.x);
+    // One more on each side, since these are rounded.
+    let from = place(middle - half).floor() as i64 - 1;
+    let to = place(middle + half).ceil() as i64 + 2;
+    let length = (to - from) as usize;
+    if length >= count {
+        return all;
+    }
+    let start = from.rem_euclid(count as i64) as usize;
+    match (start + length).checked_sub(count) {
+        Some(wrapped) => [0..wrapped, start..count],
+        None => [start..start + length, 0..0],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The columns that are left out are outside of the lobe, for directions all over the sphere.
+    #[test]
+    fn columns_of_a_lobe() {
+        let poles = [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(1e-12, 1.0, 0.0)];
+        let others = directions(9).into_iter().map(|(direction, _)| direction);
+        for n in others.chain(poles) {
+            for (rows, least) in [(1, 0.5), (4, 0.0), (8, 0.2), (40, 0.85), (40, 0.999)] {
+                for row in directions(rows).chunks(2 * rows) {
+                    let near = columns_near(n, row[0].0, least, row.len());
+                    assert!(near[1].is_empty() || near[0].end <= near[1].start);
+                    for (column, (direction, _)) in row.iter().enumerate() {
+                        let is_near = near.iter().any(|part| part.contains(&column));
+                        assert!(is_near || n.dot(*direction) < least, "{n} {direction} {least}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn powers() {
+        for exponent in [0.0, 1.0, 8.0, 60.0, 128.0, 1.58, 0.5] {
+            for cosine in [0.0, 1e-3, 0.5, 0.999, 1.0] {
+                let (found, expected) = (power_of(exponent)(cosine), cosine.powf(exponent));
+                assert!((found - expected).abs() <= 1e-13 * expected, "{cosine}^{exponent}");
+            }
+        }
+    }
 }
