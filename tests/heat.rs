@@ -349,9 +349,9 @@ fn error_of_a_difference() -> Outcome {
     Ok(())
 }
 
-/// Three squares, one behind the other: an opaque one, of which a blended one covers the left half, and
-/// a blended one behind it. Each pixel has the number of the nearest.
-fn blended() -> Outcome {
+/// A model of three squares, one behind the other, with the bytes of their corners: an opaque one, of
+/// which a blended one covers the left half, and a blended one behind it.
+fn squares() -> (Value, Vec<u8>) {
     let corners = [[-1.0_f32, 1.0, 0.0], [-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0]];
     let mut buffer: Vec<u8> = corners.iter().flatten().flat_map(|one| one.to_le_bytes()).collect();
     buffer.extend([0_u16, 1, 2, 0, 2, 3].iter().flat_map(|index| index.to_le_bytes()));
@@ -387,6 +387,12 @@ fn blended() -> Outcome {
         ],
         "buffers": [{ "byteLength": buffer.len(), "uri": "squares.bin" }],
     });
+    (document, buffer)
+}
+
+/// Each pixel has the number of the nearest surface, also where that is blended over another one.
+fn blended() -> Outcome {
+    let (document, buffer) = squares();
     let scratch = tempfile::tempdir()?;
     std::fs::write(scratch.path().join("squares.bin"), buffer)?;
     std::fs::write(scratch.path().join("squares.gltf"), document.to_string())?;

@@ -29,7 +29,7 @@ pub fn draw_heat(arguments: &Arguments, show: &str, form: DiagnosticForm) -> Res
         }
         None => {
             refuse_own(&Arguments { own: without_json(arguments), ..arguments.clone() })?;
-            let programs = Programs::load(LIBRARY_FILES)
+            let programs = Programs::outline(LIBRARY_FILES)
                 .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
             let plan = make_plan(&programs, arguments)?;
             let painter = executor::open_executor(entry)?;

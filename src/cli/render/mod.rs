@@ -136,7 +136,7 @@ pub fn fragments_at(
         };
     }
     refuse_own(arguments)?;
-    let programs = Programs::load(LIBRARY_FILES)
+    let programs = Programs::outline(LIBRARY_FILES)
         .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
     let plan = make_plan(&programs, arguments)?;
     let painter = executor::open_executor(entry)?;
@@ -218,7 +218,7 @@ fn draw_picture(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failu
         return own::draw_own(arguments, file, &shot, form);
     }
     refuse_own(arguments)?;
-    let programs = Programs::load(LIBRARY_FILES)
+    let programs = Programs::outline(LIBRARY_FILES)
         .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
     if arguments.all || arguments.comparisons {
         let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("gallery"));

@@ -289,6 +289,19 @@ pub fn library_manifest(
     }
 }
 
+/// As [`library_manifest`], without the lists that decide which permutations there are: for callers that
+/// choose one themselves.
+pub fn library_outline(
+    library: Embedded,
+) -> Result<(SourceSet, Manifest), (SourceSet, Diagnostics)> {
+    let mut sources = SourceSet::default();
+    let id = manifest_text(&library_packages(library).root, MANIFEST, &mut sources);
+    match id.and_then(|id| manifest::parse_outline(&sources, id)) {
+        Ok(manifest) => Ok((sources, manifest)),
+        Err(diagnostics) => Err((sources, diagnostics)),
+    }
+}
+
 /// Where results for a manifest are kept when nobody says where: in the `target` folder of the
 /// cargo package it is in, or else in the user's cache folder. `None` where there is neither.
 pub fn cache_folder(manifest: &Path) -> Option<PathBuf> {

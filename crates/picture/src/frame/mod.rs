@@ -107,7 +107,22 @@ impl Programs {
     /// # Errors
     /// The manifest's, with the texts to show them in.
     pub fn load(library: Embedded) -> Result<Self, (SourceSet, Diagnostics)> {
-        let (mut texts, manifest) = project::library_manifest(library)?;
+        Self::of_manifest(library, project::library_manifest(library)?)
+    }
+
+    /// The same without the lists of the manifest, in a fraction of the time: for those who draw a
+    /// permutation that they choose themselves. Whether it ships is not known.
+    ///
+    /// # Errors
+    /// Those of [`Self::load`].
+    pub fn outline(library: Embedded) -> Result<Self, (SourceSet, Diagnostics)> {
+        Self::of_manifest(library, project::library_outline(library)?)
+    }
+
+    fn of_manifest(
+        library: Embedded,
+        (mut texts, manifest): (SourceSet, Manifest),
+    ) -> Result<Self, (SourceSet, Diagnostics)> {
         match NeedsTable::load(library, &mut texts, &manifest) {
             Ok(pictures) => {
                 let (graphs, stages) = Default::default();
