@@ -262,7 +262,7 @@ impl Running {
     ) -> Result<Breakpoint, Failed> {
         let subject = self.replay.subject();
         let found = subject.statements.from_line(source, line);
-        let statement = found.ok_or("no statement at this line or below runs")?;
+        let statement = found.ok_or("the shader runs no statement at this line or below")?;
         let line = subject.statements.get(statement).map_or(line, |one| one.line);
         let text = |name: &str| {
             let text = wanted.get(name).and_then(Value::as_str).map(str::trim);

@@ -112,7 +112,10 @@ impl Session {
             _ => marks.iter().map(|one| one.mark.text()).collect::<Vec<_>>().join("\n"),
         };
         match (first, description.is_empty()) {
-            (None, true) => Err("nothing is marked here".to_owned()),
+            (None, true) => {
+                Err("nothing is marked where the run stands: `Marks` of the scopes has all so far"
+                    .to_owned())
+            }
             (first, _) => Ok(json!({
                 "exceptionId": first.unwrap_or("error"),
                 "description": description,

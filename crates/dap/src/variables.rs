@@ -16,8 +16,8 @@ const MOST: usize = 1 << 16;
 /// What the client may ask for by a number.
 #[derive(Debug, Clone)]
 pub(crate) enum Handle {
-    /// Variables by their numbers, and the function that has just returned.
-    Group(Vec<usize>, Option<usize>),
+    /// Variables by their numbers.
+    Group(Vec<usize>),
     /// A part of the memory: its name in expressions, its shape, place and first scalar.
     Part(Part),
     /// A value of an expression.
@@ -61,8 +61,8 @@ impl Session {
         let run = self.running_mut()?;
         let scopes = run.scopes_of(frame)?;
         let mut rows = Vec::new();
-        for (name, hint, handle, count) in scopes {
-            let reference = run.handle(handle)?;
+        for Scope { name, hint, has, count } in scopes {
+            let reference = run.handle(has)?;
             rows.push(json!({
                 "name": name, "presentationHint": hint, "variablesReference": reference,
                 "namedVariables": count, "expensive": false,
@@ -81,9 +81,10 @@ impl Session {
         let run = self.running_mut()?;
         let index = (reference as usize).checked_sub(1);
         let handle = index.and_then(|index| run.handles.get(index)).cloned();
-        let handle = handle.ok_or("the run has moved since this value was shown")?;
+        let handle = handle
+            .ok_or("the run has moved since this value was shown: ask for its scope again")?;
         let rows = match handle {
-            Handle::Group(variables, returned) => run.group_rows(&variables, returned)?,
+            Handle::Group(variables) => run.group_rows(&variables)?,
             Handle::Part(part) => {
                 let parts = part.parts(start, count);
                 if parts.is_empty() {
@@ -119,8 +120,14 @@ impl Session {
     }
 }
 
-/// A scope: its name, its hint, what it has, and how much.
-type Scope = (&'static str, &'static str, Handle, usize);
+/// A group of variables.
+struct Scope {
+    name: &'static str,
+    /// What the protocol calls it.
+    hint: &'static str,
+    has: Handle,
+    count: usize,
+}
 
 impl Running {
     /// The frame of a number; without one the innermost.
@@ -131,7 +138,8 @@ impl Running {
             None => frames.len().checked_sub(1),
         };
         let found = depth.and_then(|depth| Some((depth, frames.get(depth)?.clone())));
-        found.ok_or_else(|| "the stack has no such frame".to_owned())
+        let words = "the stack has no such frame: it is another one after each step";
+        found.ok_or_else(|| words.to_owned())
     }
 
     fn scopes_of(&self, id: u32) -> Result<Vec<Scope>, Failed> {
@@ -153,48 +161,47 @@ impl Running {
             let variables = subject.variables_of(function);
             { variables }.find(|(_, one)| one.kind == VariableKind::Result).map(|(index, _)| index)
         });
-        let mut scopes = Vec::new();
-        let mut add = |name, hint, variables: Vec<usize>, result: Option<usize>| {
-            let count = variables.len() + usize::from(result.is_some());
-            if count > 0 {
-                scopes.push((name, hint, Handle::Group(variables, result), count));
-            }
+        let own = of(&[VariableKind::Let, VariableKind::Var]);
+        let locals: Vec<usize> = result.into_iter().chain(own).collect();
+        let groups = [
+            ("Locals", "locals", locals),
+            ("Parameters", "arguments", of(&[VariableKind::Parameter])),
+            ("Module", "globals", of(&[VariableKind::Private])),
+            ("Uniforms and buffers", "globals", of(&[VariableKind::Buffer])),
+        ];
+        let group = |(name, hint, variables): (_, _, Vec<usize>)| {
+            let count = variables.len();
+            Scope { name, hint, has: Handle::Group(variables), count }
         };
-        add("Locals", "locals", of(&[VariableKind::Let, VariableKind::Var]), result);
-        add("Parameters", "arguments", of(&[VariableKind::Parameter]), None);
-        add("Module", "globals", of(&[VariableKind::Private]), None);
-        add("Uniforms and buffers", "globals", of(&[VariableKind::Buffer]), None);
         let marks = place.marks().len();
-        if marks > 0 {
-            scopes.push(("Marks", "marks", Handle::Marks, marks));
-        }
-        Ok(scopes)
+        let marks = Scope { name: "Marks", hint: "marks", has: Handle::Marks, count: marks };
+        let all = groups.into_iter().map(group).chain([marks]);
+        Ok(all.filter(|scope| scope.count > 0).collect())
     }
 
     /// A number by which the client may ask for something.
     fn handle(&mut self, handle: Handle) -> Result<usize, Failed> {
         if self.handles.len() >= MOST {
-            return Err(format!("more than {MOST} values were asked for here"));
+            return Err(format!(
+                "at most {MOST} values are shown at one place: make a step, or watch fewer"
+            ));
         }
         self.handles.push(handle);
         Ok(self.handles.len())
     }
 
-    fn group_rows(&mut self, all: &[usize], returned: Option<usize>) -> Result<Vec<Value>, Failed> {
+    fn group_rows(&mut self, all: &[usize]) -> Result<Vec<Value>, Failed> {
         let mut rows = Vec::new();
-        for (index, is_result) in
-            returned.into_iter().map(|index| (index, true)).chain(all.iter().map(|at| (*at, false)))
-        {
+        for index in all {
             let subject = self.replay.subject();
-            let Some(variable) = subject.program.variables().get(index) else { continue };
+            let Some(variable) = subject.program.variables().get(*index) else { continue };
             let (shape, place) = (variable.shape.clone(), variable.place);
-            let mut path = variable.name.clone();
-            let name = match (is_result, variable.function) {
-                (true, Some(function)) => {
-                    path.clear();
-                    format!("{}() returned", subject.name_of(function).name)
+            // No expression names what a function returned.
+            let (name, path) = match (variable.kind, variable.function) {
+                (VariableKind::Result, Some(function)) => {
+                    (format!("{}() returned", subject.name_of(function).name), String::new())
                 }
-                _ => path.clone(),
+                _ => (variable.name.clone(), variable.name.clone()),
             };
             rows.push(self.part_row(&name, Part { path, shape, place, first: 0 })?);
         }

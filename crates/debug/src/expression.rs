@@ -228,10 +228,13 @@ fn members_text(subject: &Subject, takes: &[usize], text: &str) -> String {
 /// Refuses what is no expression before naga reads it.
 fn refuse(text: &str) -> Result<(), String> {
     if text.trim().is_empty() {
-        return Err("there is no expression".to_owned());
+        return Err("there is no expression: write one in WGSL, such as `2.0 * x`".to_owned());
     }
     if text.len() > LONGEST {
-        return Err(format!("an expression has at most {LONGEST} bytes"));
+        return Err(format!(
+            "an expression has at most {LONGEST} bytes, and this one {}",
+            text.len()
+        ));
     }
     if text.contains([';', '{', '}', '@']) || text.contains("/*") || text.contains("//") {
         return Err("an expression of WGSL has no `;`, no braces and no comments".to_owned());

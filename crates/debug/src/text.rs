@@ -39,7 +39,7 @@ impl Statements {
     /// Finds the statements of a program, in the text that `map` leads back from.
     pub fn new(program: &Program, text: &str, map: &SourceMap, sources: &SourceSet) -> Self {
         let mut finder =
-            Finder { map, sources, cuts: BTreeMap::new(), known: BTreeMap::new(), all: Vec::new() };
+            Finder { map, sources, ends: BTreeMap::new(), known: BTreeMap::new(), all: Vec::new() };
         let mut of_code: Vec<_> = program.spans().iter().map(|span| finder.find(*span)).collect();
         let variables = program.variables().iter();
         let mut of_variables: Vec<_> =
@@ -158,8 +158,8 @@ fn lets_named(text: &str, part: Range<usize>, name: &str) -> Vec<usize> {
 struct Finder<'a> {
     map: &'a SourceMap,
     sources: &'a SourceSet,
-    /// Where statements end in each text.
-    cuts: BTreeMap<SourceId, Vec<usize>>,
+    /// Where statements and lines end in each text.
+    ends: BTreeMap<SourceId, Ends>,
     /// Statements by where they begin.
     known: BTreeMap<(SourceId, usize), StatementId>,
     all: Vec<Statement>,
@@ -169,16 +169,30 @@ impl Finder<'_> {
     fn find(&mut self, span: naga::Span) -> Option<StatementId> {
         let place = self.map.lookup(span.to_range()?)?;
         let text = &*self.sources.get(place.source).text;
-        let cuts = self.cuts.entry(place.source).or_insert_with(|| cuts_of(text));
+        let Ends { cuts, lines } = self.ends.entry(place.source).or_insert_with(|| Ends::of(text));
         let range = statement_around(text, cuts, place.start as usize);
         let all = &mut self.all;
         let id = self.known.entry((place.source, range.start)).or_insert_with(|| {
-            let before = text.as_bytes()[..range.start].iter();
-            let line = before.filter(|byte| **byte == b'\n').count() as u32 + 1;
+            let line = lines.partition_point(|end| *end < range.start) as u32 + 1;
             all.push(Statement { span: Span::new(place.source, range), line });
             all.len() as StatementId - 1
         });
         Some(*id)
+    }
+}
+
+/// Where things end in a text.
+struct Ends {
+    /// As [`cuts_of`] has them.
+    cuts: Vec<usize>,
+    /// The places of line breaks.
+    lines: Vec<usize>,
+}
+
+impl Ends {
+    fn of(text: &str) -> Self {
+        let lines = text.match_indices('\n').map(|(at, _)| at).collect();
+        Self { cuts: cuts_of(text), lines }
     }
 }
 

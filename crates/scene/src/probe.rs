@@ -136,13 +136,18 @@ pub fn prefilter(sky: &Sky<'_>, exponent: f64, size: usize, rows: usize) -> Cube
     // largest, or they are behind the lobe.
     let outside = if exponent > 0.0 { 1e-9_f64.powf(exponent.recip()) } else { 0.0 };
     let power = power_of(exponent);
+    // Each row with the height of its directions and their distance from the axis.
+    let rows: Vec<(f64, f64, &[(DVec3, f64, DVec3)])> =
+        seen.chunks((2 * rows).max(1)).map(|row| (row[0].0.y, off_axis(row[0].0), row)).collect();
     let texel = |index: usize| {
         let (face, row, column) = (index / (size * size), index / size % size, index % size);
         let n = CubeMap::direction(size, face, column, row);
         let (mut sum, mut all) = (DVec3::ZERO, 0.0);
         // Most directions are outside of the lobe: of a row, only its columns near it are looked at.
-        for row in seen.chunks((2 * rows).max(1)) {
-            for columns in columns_near(n, row[0].0, outside, row.len()) {
+        let (side, middle) = (off_axis(n), n.z.atan2(n.x));
+        for (height, radius, row) in &rows {
+            let (along, round) = (n.y * height, side * radius);
+            for columns in columns_near(middle, (along, round), outside, row.len()) {
                 for (direction, solid_angle, radiance) in &row[columns] {
                     let cosine = n.dot(*direction).max(0.0);
                     if cosine < outside {
@@ -179,13 +184,21 @@ fn power_of(exponent: f64) -> impl Fn(f64) -> f64 {
     }
 }
 
-/// The columns of a row of [`directions`] whose cosine to `n` may be at least `least`, and a few more:
-/// at most two ranges in order. `first` is the direction of the row's first column.
-fn columns_near(n: DVec3, first: DVec3, least: f64, count: usize) -> [Range<usize>; 2] {
+/// How far a point is from the axis that rows of [`directions`] go round.
+fn off_axis(direction: DVec3) -> f64 {
+    (direction.x * direction.x + direction.z * direction.z).sqrt()
+}
+
+/// The columns of a row of [`directions`] whose cosine to a direction may be at least `least`, and a few
+/// more: at most two ranges in order. The direction is in the column of the angle `middle`, and the
+/// cosine is `along` plus `round` times that of the angle between the columns.
+fn columns_near(
+    middle: f64,
+    (along, round): (f64, f64),
+    least: f64,
+    count: usize,
+) -> [Range<usize>; 2] {
     let (all, none) = ([0..count, 0..0], [0..0, 0..0]);
-    let round = n.x.hypot(n.z) * first.x.hypot(first.z);
-    // The cosine is this plus `round` times that of the angle between the columns.
-    let along = n.y * first.y;
     if along + round < least - 1e-9 {
         return none;
     }
@@ -195,7 +208,6 @@ fn columns_near(n: DVec3, first: DVec3, least: f64, count: usize) -> [Range<usiz
     let half = ((least - along) / round).clamp(-1.0, 1.0).acos();
     let step = TAU / count as f64;
     let place = |angle: f64| angle / step - 0.5;
-    let middle = n.z.atan2(n.x);
     // One more on each side, since these are rounded.
     let from = place(middle - half).floor() as i64 - 1;
     let to = place(middle + half).ceil() as i64 + 2;
@@ -222,7 +234,9 @@ mod tests {
         for n in others.chain(poles) {
             for (rows, least) in [(1, 0.5), (4, 0.0), (8, 0.2), (40, 0.85), (40, 0.999)] {
                 for row in directions(rows).chunks(2 * rows) {
-                    let near = columns_near(n, row[0].0, least, row.len());
+                    let first = row[0].0;
+                    let parts = (n.y * first.y, off_axis(n) * off_axis(first));
+                    let near = columns_near(n.z.atan2(n.x), parts, least, row.len());
                     assert!(near[1].is_empty() || near[0].end <= near[1].start);
                     for (column, (direction, _)) in row.iter().enumerate() {
                         let is_near = near.iter().any(|part| part.contains(&column));
