@@ -10,8 +10,14 @@
 
 mod compose_glsl;
 mod compose_wesl;
+mod imports;
 mod texts;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[compose_glsl::tests, compose_wesl::tests, texts::tests])
+    lamplight_testing::run_tests(&[
+        compose_glsl::tests,
+        compose_wesl::tests,
+        imports::tests,
+        texts::tests,
+    ])
 }
