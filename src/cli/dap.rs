@@ -117,18 +117,13 @@ struct Machine<'a> {
 
 impl Host for Machine<'_> {
     fn launch(&mut self, arguments: &Value) -> Result<Launched, Refusal> {
-        self.enter(arguments)?;
-        let asked = arguments_of(arguments)?;
-        let (title, share) = (asked.title(), asked.lost_share());
-        let mut launched = None;
-        let outcome = debug::with_subject(&asked, self.form, &mut |text, subject| {
-            let (sources, title) = (text.sources.clone(), title.clone());
-            let imports = text.map.imports.iter().copied().collect();
-            launched = Some(Launched { subject, sources, imports, title, share });
-            Ok(())
-        });
-        outcome.map_err(refusal)?;
-        launched.ok_or_else(|| plain_refusal("nothing was made ready to run"))
+        let before = std::env::current_dir();
+        let launched = self.enter(arguments).and_then(|()| self.made(arguments));
+        // Paths of a run that stays begin at its own folder.
+        if let (Err(_), Ok(before)) = (&launched, before) {
+            let _ = std::env::set_current_dir(before);
+        }
+        launched
     }
 
     fn path_of(&self, source: &Source) -> Option<String> {
@@ -150,6 +145,20 @@ impl Host for Machine<'_> {
 }
 
 impl Machine<'_> {
+    fn made(&self, arguments: &Value) -> Result<Launched, Refusal> {
+        let asked = arguments_of(arguments)?;
+        let (title, share) = (asked.title(), asked.lost_share());
+        let mut launched = None;
+        let outcome = debug::with_subject(&asked, self.form, &mut |text, subject| {
+            let (sources, title) = (text.sources.clone(), title.clone());
+            let imports = text.map.imports.iter().copied().collect();
+            launched = Some(Launched { subject, sources, imports, title, share });
+            Ok(())
+        });
+        outcome.map_err(refusal)?;
+        launched.ok_or_else(|| plain_refusal("nothing was made ready to run"))
+    }
+
     /// Goes to the folder that the paths of a launch begin at.
     fn enter(&self, arguments: &Value) -> Result<(), Refusal> {
         let folder = arguments.get("cwd").and_then(Value::as_str).unwrap_or_default();

@@ -174,8 +174,8 @@ impl Replay {
     pub fn new(subject: Subject, share: f64) -> Result<Self, Error> {
         let now = Moment::first(&subject, share)?;
         let most = (BYTES / 2 / now.bytes()).min(MOST);
-        let (kept, near) = (BTreeMap::new(), BTreeMap::new());
-        Ok(Self { subject, now, kept, apart: APART, near, most, share })
+        let kept = (most > 0).then(|| (0, now.clone())).into_iter().collect();
+        Ok(Self { subject, now, kept, apart: APART, near: BTreeMap::new(), most, share })
     }
 
     /// What runs.
@@ -295,9 +295,6 @@ impl Replay {
     /// Keeps a copy, if it is time for one. Where there are too many, every second goes.
     fn keep(&mut self) {
         let clock = self.now.place.clock;
-        if self.most == 0 {
-            return;
-        }
         let last = self.kept.last_key_value().map_or(0, |(clock, _)| *clock);
         if clock < last + self.apart {
             return;
@@ -307,7 +304,7 @@ impl Replay {
             let apart = self.apart;
             self.kept.retain(|clock, _| clock % apart == 0);
         }
-        if clock.is_multiple_of(self.apart) {
+        if clock.is_multiple_of(self.apart) && self.kept.len() < self.most {
             self.kept.insert(clock, self.now.clone());
         }
     }
