@@ -137,8 +137,8 @@ pub fn prefilter(sky: &Sky<'_>, exponent: f64, size: usize, rows: usize) -> Cube
     let outside = if exponent > 0.0 { 1e-9_f64.powf(exponent.recip()) } else { 0.0 };
     let power = power_of(exponent);
     // Each row with the height of its directions and their distance from the axis.
-    let rows: Vec<(f64, f64, &[(DVec3, f64, DVec3)])> =
-        seen.chunks((2 * rows).max(1)).map(|row| (row[0].0.y, off_axis(row[0].0), row)).collect();
+    let chunks = seen.chunks((2 * rows).max(1));
+    let rows: Vec<_> = chunks.map(|row| (row[0].0.y, off_axis(row[0].0), row)).collect();
     let texel = |index: usize| {
         let (face, row, column) = (index / (size * size), index / size % size, index % size);
         let n = CubeMap::direction(size, face, column, row);
