@@ -59,6 +59,7 @@ pub use filters::without_derivative_rule;
 pub use header::is_header_line;
 pub use isolate::{isolate, with_defaults};
 pub use names::type_name;
+pub use plain::with_masked_shifts;
 pub use reflect::reflect;
 pub use specialise::keep_variables_only;
 

@@ -12,6 +12,7 @@ use naga::{
 };
 
 use super::gaps::{Gap, Rules, collect_structs, ends_of, gaps_of};
+use super::located;
 use super::rebuild::rebuild;
 use lamplight_validate::{change_operands, info_unchecked};
 
@@ -61,6 +62,12 @@ fn all_gaps(module: &Module) -> Result<BTreeMap<TypeHandle, Vec<Gap>>, String> {
             ));
         }
         if !gaps.is_empty() {
+            // An input or output of a stage cannot be padding.
+            if let TypeInner::Struct { members, span: _ } = &module.types[*ty].inner
+                && members.iter().any(|member| member.binding.is_some())
+            {
+                return Err(located::LOCATED.to_owned());
+            }
             found.insert(*ty, gaps);
         }
     }
@@ -398,5 +405,21 @@ fn accessed(module: &Module, ty: &TypeResolution) -> Option<TypeHandle> {
     match ty.inner_with(&module.types) {
         TypeInner::Pointer { base, space: _ } => Some(*base),
         _ => ty.handle(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{located, with_padding};
+    use lamplight_validate::{info_for_some, parse_wgsl};
+
+    #[test]
+    fn inputs_get_no_padding() {
+        let input = "struct S { @align(64) @location(0) a: f32, @builtin(position) b: vec4f }
+            @group(0) @binding(0) var<storage, read_write> all: S;
+            @fragment fn main(input: S) { all = input; }";
+        let module = parse_wgsl(input).unwrap();
+        let made = with_padding(&module, &info_for_some(&module).unwrap());
+        assert_eq!(made.map(|made| made.is_some()), Err(located::LOCATED.to_owned()));
     }
 }

@@ -243,6 +243,24 @@ fn repeated_offsets(function: &Function, needs: Needs) -> BTreeMap<Value, Form> 
     repeated.collect()
 }
 
+/// The module with shifts by less than the bits of a number, for those who give a module of naga to wgpu;
+/// `None` where it has no others. naga writes SPIR-V in which those are open.
+pub fn with_masked_shifts(module: &Module) -> Option<Module> {
+    let functions = module.functions.iter().map(|(_, function)| function);
+    let all = functions.chain(module.entry_points.iter().map(|point| &point.function));
+    let is_shift = |expression: &Expression| {
+        use BinaryOperator::{ShiftLeft, ShiftRight};
+        matches!(expression, Expression::Binary { op: ShiftLeft | ShiftRight, left: _, right: _ })
+    };
+    let mut expressions = all.flat_map(|function| function.expressions.iter());
+    if !expressions.any(|(_, expression)| is_shift(expression)) {
+        return None;
+    }
+    let info = info_unchecked(module).ok()?;
+    let needs = Needs { masked_shifts: true, ..Needs::default() };
+    with_plain_forms(module, &info, needs).ok()?.map(|(module, _)| module)
+}
+
 /// Whether a divisor is a number other than 0 and -1.
 fn is_harmless(module: &Module, function: &Function, divisor: Value) -> bool {
     let is_number = |literal: Literal| !matches!(literal, Literal::I32(0 | -1) | Literal::U32(0));

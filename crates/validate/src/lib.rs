@@ -11,6 +11,7 @@ mod atomics;
 mod bitcasts;
 mod browsers;
 mod constants;
+mod endless;
 mod every;
 mod foreign;
 mod gathers;
@@ -284,6 +285,7 @@ pub fn prepare_part(module: &mut naga::Module) -> bool {
 /// Puts into a module what naga needs to write it rightly.
 fn prepare(module: &mut naga::Module) -> Result<(), naga::Span> {
     gathers::make_invocations_unsigned(module);
+    endless::return_values(module);
     loops::store_loop_values(module)
 }
 

@@ -8,6 +8,7 @@ use naga::back::wgsl::{Writer, WriterFlags};
 use crate::nesting::nesting_lack;
 use crate::slots::{Numbering, native_reflection};
 use crate::text::BoundedText;
+use crate::plain::{self, Needs};
 use crate::{
     EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, extensions, filters, lets, sized,
     specialise, unused,
@@ -42,6 +43,10 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     }
     let with_variables = lets::with_variables(source.module, source.info)?;
     let source = &source.with_analysed(with_variables.as_ref());
+    // WGSL counts these modulo the bits. wgpu, which may read the text, does not.
+    let needs = Needs { masked_shifts: true, ..Needs::default() };
+    let plain = plain::with_plain_forms(source.module, source.info, needs)?;
+    let source = &source.with_analysed(plain.as_ref());
     let written = specialise::written_module(source.module)?;
     let module = written.as_ref().unwrap_or(source.module);
     let mut text = BoundedText::default();

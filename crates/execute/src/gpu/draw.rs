@@ -85,7 +85,9 @@ impl WgpuDevice {
         stage: EntryPoint<'_>,
         as_storage: &BTreeSet<BindingPlace>,
     ) -> wgpu::ShaderModule {
-        let source = wgpu::ShaderSource::Naga(Cow::Owned(storage_blocks(stage.module, as_storage)));
+        let module = storage_blocks(stage.module, as_storage);
+        let module = lamplight_emit::with_masked_shifts(&module).unwrap_or(module);
+        let source = wgpu::ShaderSource::Naga(Cow::Owned(module));
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
     }
 

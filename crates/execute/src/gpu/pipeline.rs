@@ -37,8 +37,9 @@ impl PreparedKernel {
         let fragment = match emitted {
             Some(emitted) => emitted.module(device, &kernel.name),
             None => {
-                let source =
-                    wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(kernel.module.clone()));
+                let masked = lamplight_emit::with_masked_shifts(&kernel.module);
+                let module = masked.unwrap_or_else(|| kernel.module.clone());
+                let source = wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module));
                 device.create_shader_module(wgpu::ShaderModuleDescriptor {
                     label: Some(&kernel.name),
                     source,
