@@ -7,6 +7,7 @@ mod links;
 mod lost;
 mod named;
 mod pictures;
+mod pixels;
 mod playground;
 mod policy;
 mod programs;
@@ -31,9 +32,10 @@ type Case = (&'static str, fn() -> Outcome);
 const PATIENCE: Duration = Duration::from_secs(120);
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 9] = [
+    let cases: [Case; 10] = [
         ("catalogue", catalogue),
         ("pictures", pictures::pictures),
+        ("pixels", pixels::pixels),
         ("programs", programs::programs),
         ("playground", playground::playground),
         ("seen", seen::seen),

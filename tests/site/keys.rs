@@ -30,7 +30,7 @@ pub fn keys() -> Outcome {
 }
 
 /// Presses a key, as a keyboard does.
-fn press(page: &BrowserPage, key: &str) -> Outcome {
+pub fn press(page: &BrowserPage, key: &str) -> Outcome {
     let found = KEYS.iter().find(|(name, ..)| *name == key);
     let (_, code, typed) = found.ok_or_else(|| format!("the table has no key {key}"))?;
     let mut event = json!({ "key": key, "code": key, "windowsVirtualKeyCode": code });
@@ -44,7 +44,7 @@ fn press(page: &BrowserPage, key: &str) -> Outcome {
     Ok(())
 }
 
-fn focus(page: &BrowserPage, selector: &str) -> Outcome {
+pub fn focus(page: &BrowserPage, selector: &str) -> Outcome {
     let there = format!("document.querySelector({})", Value::from(selector));
     wait(page, &format!("{there} !== null"))?;
     page.evaluate(&format!("{there}.focus()"), PATIENCE)?;

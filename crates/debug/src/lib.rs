@@ -3,7 +3,8 @@
 //!
 //! `module + arguments -> subject -> events -> table | JSON`
 //!
-//! A [`Replay`] is a run that goes forth and back, for debuggers that stop.
+//! A [`Replay`] is a run that goes forth and back, for debuggers that stop. A [`Survey`] runs many
+//! fragments, and says only which kinds of marks each has.
 //!
 //! A [`Subject`] can be run again and again, each time with the same result. So nothing of a run is
 //! kept: [`record`] shows each statement with what it gave a name, in f32, in f64 and with the bound
@@ -20,6 +21,7 @@ mod record;
 mod replay;
 mod scope;
 mod subject;
+mod survey;
 mod table;
 mod text;
 mod value;
@@ -32,7 +34,8 @@ pub use mark::Mark;
 pub use record::{Change, Event, Options, Outcome, Step, record};
 pub use replay::{Found, Halt, Marked, Place, Replay, Seen};
 pub use subject::{Call, Ended, FunctionName, Subject, SubjectText, diagnosed};
-pub use table::{Table, outcome_text, statement_text, turn_text};
+pub use survey::Survey;
+pub use table::{Table, outcome_text, statement_text, texture_lines, turn_text};
 pub use text::{Statement, StatementId, Statements};
 pub use value::{Scalar, Value, digits_text, number_json};
 pub use walk::{Frame, Loop};

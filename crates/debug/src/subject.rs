@@ -4,7 +4,7 @@ use lamplight_compose::SourceMap;
 use lamplight_diagnostic::source::{SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_eval::{
-    Error, Function, FunctionId, Machine, Number, Observer, Paced, Program, Resources, Shape,
+    Error, Function, FunctionId, LOOP_LIMIT, Machine, Number, Observer, Paced, Program, Resources, Shape,
     SlotKind, Variable, VariableKind,
 };
 use lamplight_lint::{DocumentedParameter, documented_parameters};
@@ -49,6 +49,8 @@ pub struct Subject {
     function: FunctionId,
     call: Call,
     resources: Resources,
+    /// How many turns all loops of a run may make.
+    loop_limit: u64,
     /// What authors call functions, and where these are.
     names: Vec<FunctionName>,
     documented: Vec<DocumentedParameter>,
@@ -98,10 +100,17 @@ impl Subject {
             function: id,
             call,
             resources,
+            loop_limit: LOOP_LIMIT,
             names,
             documented,
             program,
         })
+    }
+
+    /// The same with another limit for the turns that all loops of a run make.
+    #[must_use]
+    pub fn with_loop_limit(self, loop_limit: u64) -> Self {
+        Self { loop_limit, ..self }
     }
 
     /// The function that is called.
@@ -208,17 +217,20 @@ impl Subject {
         self.start_changed(&|_, value| value)
     }
 
-    fn start_changed<N: Number>(&self, change: &dyn Fn(usize, N) -> N) -> Result<Paced<N>, Error> {
+    /// What runs it, with what it reads.
+    pub(crate) fn machine<N: Number>(&self, resources: Resources) -> Result<Machine<'_, N>, Error> {
         let mut machine = Machine::<N>::new(&self.program)?;
         machine.sanitize(true);
-        machine.bind(self.resources.clone())?;
+        machine.loop_limit = self.loop_limit;
+        machine.bind(resources)?;
+        Ok(machine)
+    }
+
+    fn start_changed<N: Number>(&self, change: &dyn Fn(usize, N) -> N) -> Result<Paced<N>, Error> {
+        let machine = self.machine(self.resources.clone())?;
         let kinds = self.signature().map_or(&[][..], |signature| &signature.arguments);
         let slots = |words: &[f32]| -> Vec<N> {
-            let slot = |(word, kind): (&f32, &SlotKind)| match kind {
-                SlotKind::Float => N::from_f64(f64::from(*word)),
-                _ => N::from_word(word.to_bits()),
-            };
-            let all = words.iter().zip(kinds).map(slot).enumerate();
+            let all = argument_slots(words, kinds).into_iter().enumerate();
             all.map(|(index, value)| change(index, value)).collect()
         };
         match &self.call {
@@ -229,6 +241,15 @@ impl Subject {
             }
         }
     }
+}
+
+/// The arguments of a call as numbers, from words as in [`Number::from_word`].
+pub(crate) fn argument_slots<N: Number>(words: &[f32], kinds: &[SlotKind]) -> Vec<N> {
+    let slot = |(word, kind): (&f32, &SlotKind)| match kind {
+        SlotKind::Float => N::from_f64(f64::from(*word)),
+        _ => N::from_word(word.to_bits()),
+    };
+    words.iter().zip(kinds).map(slot).collect()
 }
 
 fn structs_of(module: &naga::Module) -> Vec<(String, Shape)> {

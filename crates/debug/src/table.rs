@@ -195,6 +195,13 @@ fn value_row(text: &mut String, depth: usize, name: &str, value: &Value) {
 
 fn texture_rows(text: &mut String, depth: usize, read: &TextureRead) {
     let indent = "  ".repeat(depth);
+    for line in texture_lines(read) {
+        let _ = writeln!(text, "       {indent}  {line}");
+    }
+}
+
+/// What was read of a texture: where, and below it the texels.
+pub fn texture_lines(read: &TextureRead) -> Vec<String> {
     let list = |numbers: &[f64]| {
         let all = numbers.iter().map(|number| digits_text(*number, 6));
         all.collect::<Vec<_>>().join(" ")
@@ -203,14 +210,14 @@ fn texture_rows(text: &mut String, depth: usize, read: &TextureRead) {
     let level = level.map_or(String::new(), |level| format!(", level {}", digits_text(level, 4)));
     let reference =
         reference.map_or(String::new(), |one| format!(", compared with {}", digits_text(one, 6)));
-    let coordinate = list(coordinate);
-    let _ = writeln!(text, "       {indent}  {name} at {coordinate}{level}{reference}");
+    let mut lines = vec![format!("{name} at {}{level}{reference}", list(coordinate))];
     for one in texels.iter().take(TEXELS) {
         let [x, y, z] = one.at;
         let (level, texel) = (one.level, list(&one.texel));
-        let _ = writeln!(text, "       {indent}    texel {x} {y} {z} of level {level}: {texel}");
+        lines.push(format!("  texel {x} {y} {z} of level {level}: {texel}"));
     }
     if texels.len() > TEXELS {
-        let _ = writeln!(text, "       {indent}    ... {} more texels", texels.len() - TEXELS);
+        lines.push(format!("  ... {} more texels", texels.len() - TEXELS));
     }
+    lines
 }

@@ -7,7 +7,7 @@ use lamplight_compose::resolve::{self, Packages};
 use lamplight_compose::{self as compose, Composed, Keep};
 use lamplight_debug::{
     Call, Event, Found, Halt, Mark, Options, Outcome, Replay, Seen, Step, Subject, SubjectText,
-    Table, Why, WhyError, record, why,
+    Survey, Table, Why, WhyError, record, why,
 };
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_eval::{FindingKind, Resources};
@@ -62,6 +62,10 @@ impl Given {
             .into_iter()
             .filter_map(|event| if let Event::Step(step) = event { Some(step) } else { None })
             .collect()
+    }
+
+    fn with_limit(self, turns: u64) -> Self {
+        Self { subject: self.subject.with_loop_limit(turns), ..self }
     }
 
     /// The line of a step, what it changed, and its turns.
@@ -182,6 +186,34 @@ fn arguments_outside_of_their_range() {
     let [Mark::OutOfRange(name, words, value)] = found.as_slice() else { panic!("{found:?}") };
     assert_eq!((name.as_str(), *value), ("c", 30.0));
     assert!(words.contains("[-1, 1]"));
+}
+
+/// A survey says of each fragment of a quad what a recorded run of it is marked with.
+#[test]
+fn a_survey_of_a_quad() {
+    let text = "
+/// What is left.
+///
+/// Parameters: `x` share, [-1, 1].
+fn share(x: f32) -> f32 {
+    return 1.0 - x;
+}
+fn f(x: f32) -> f32 {
+    let r = sqrt(x);
+    var sum = share(x);
+    while sum == 7.0 {}
+    return r / (x - 0.25) + sum;
+}";
+    let own = given(text, &[0.0]).with_limit(100);
+    let survey = Survey::new(&own.subject, Resources::default(), 0.01).unwrap();
+    let quad = [0.5, 0.25, -2.0, -6.0].map(|x| vec![x]);
+    let found = |lane| survey.fragment(&own.subject, &quad, lane).map(Vec::from_iter);
+    assert_eq!(found(0).unwrap(), Vec::<&str>::new());
+    assert_eq!(found(1).unwrap(), ["division-by-zero"]);
+    assert_eq!(found(2).unwrap(), ["domain", "out-of-range"]);
+    assert!(found(3).unwrap_err().message.contains("more than 100 trips"));
+    // One does not see what another one was marked with.
+    assert_eq!(found(0).unwrap(), Vec::<&str>::new());
 }
 
 #[test]

@@ -18,7 +18,9 @@ use lamplight_execute::frame::{
     Buffers, DrawItem, Drawing, EntryPoint, Frame, Mesh, PipelineState,
 };
 use lamplight_execute::kernel::SENTINEL;
-use lamplight_execute::raster::{PixelFragment, fragments_at};
+use lamplight_execute::raster::{
+    PixelFragment, VisibleFragments, fragments_at, visible_fragments,
+};
 use lamplight_scenes::linear_from_srgb;
 
 /// A pass with everything that it is drawn with.
@@ -241,6 +243,29 @@ impl PreparedPass {
                 own.sort_by(|one, other| one.fragment.depth.total_cmp(&other.fragment.depth));
             }
             found.extend(own);
+        }
+        Ok(found)
+    }
+
+    /// The fragments that pixels show, with their stage: first those of the nearest part of the depth.
+    /// Surfaces that are blended are not among them.
+    ///
+    /// # Errors
+    /// Those of the vertex stage.
+    pub fn visible_fragments(
+        &self,
+        shot: &Shot,
+    ) -> Result<Vec<(ReadyStage, VisibleFragments)>, Diagnostics> {
+        let mut found = Vec::new();
+        for slice in std::iter::once(self).chain(&self.farther) {
+            let Some(stage) = &slice.stages.fragment else { continue };
+            let view = slice.eye_view([0.0; 2], shot.size).map_err(|problem| vec![problem])?;
+            let items: Vec<DrawItem<'_>> = slice.items().collect();
+            let entry = EntryPoint { module: &stage.validated.module, entry: stage.entry };
+            let views = std::slice::from_ref(&view);
+            let drawing = slice.drawing(&items, views, shot.size, Some((entry, slice.targets())));
+            let fragments = visible_fragments(&drawing, &view).map_err(|problem| vec![problem])?;
+            found.push((stage.clone(), fragments));
         }
         Ok(found)
     }

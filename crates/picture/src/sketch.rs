@@ -21,7 +21,7 @@ use super::textures::{binding_sampler, plain_texture};
 use super::values::PassCamera;
 use lamplight_bundle::{Binding, BindingKind, Language, Reflection, Varying};
 use lamplight_compose::resolve::{self, Packages};
-use lamplight_compose::{self as compose, Options};
+use lamplight_compose::{self as compose, Composed, Options, SourceMap};
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_emit::reflect;
@@ -30,7 +30,8 @@ use lamplight_execute::frame::{Buffers, PipelineState};
 use lamplight_permute::Settings;
 use lamplight_scenes::Shape;
 use lamplight_scenes::sets::{Eye, Material, Object};
-use lamplight_validate::{Validated, validate};
+use lamplight_glsl::wgsl::Clip;
+use lamplight_validate::{Validated, glsl_as_wgsl, of_translation, validate};
 
 /// What an input can be given: a name, and the words in names of inputs that suggest it. The
 /// vertex stage has a variable of each name, of type `vec3f`.
@@ -100,11 +101,39 @@ const LISTED: usize = 256;
 const ENTRY: &str = "fs_main";
 
 impl Sketch {
+    /// A fragment entry point of a text: the first, unless one is named. What runs leads back to
+    /// the author's places. GLSL is translated.
+    ///
+    /// # Errors
+    /// What is wrong with the text, and those of [`Self::new`].
+    pub fn of_text(composed: &Composed, entry: Option<&str>) -> Result<Self, Diagnostics> {
+        let translated = match composed.language {
+            Language::Wesl => None,
+            Language::Glsl => Some(glsl_as_wgsl(composed, Clip::Kept)?),
+        };
+        let read = translated.as_ref().unwrap_or(composed);
+        let validated = validate(read).map_err(|errors| match translated.is_some() {
+            true => errors.into_iter().map(of_translation).collect(),
+            false => errors,
+        })?;
+        let map = Arc::new(read.map.clone());
+        Self::made(validated, entry, read.text.as_str().into(), map).map_err(|problem| vec![problem])
+    }
+
     /// A fragment entry point of a module: the first, unless one is named.
     ///
     /// # Errors
     /// There is none of that name, or it returns no colour.
-    pub fn new(mut validated: Validated, entry: Option<&str>) -> Result<Self, Diagnostic> {
+    pub fn new(validated: Validated, entry: Option<&str>) -> Result<Self, Diagnostic> {
+        Self::made(validated, entry, "".into(), Arc::default())
+    }
+
+    fn made(
+        mut validated: Validated,
+        entry: Option<&str>,
+        text: Arc<str>,
+        map: Arc<SourceMap>,
+    ) -> Result<Self, Diagnostic> {
         let is_fragment = |point: &&mut naga::EntryPoint| {
             point.stage == naga::ShaderStage::Fragment
                 && entry.is_none_or(|entry| point.name == entry)
@@ -121,6 +150,7 @@ impl Sketch {
             }
         }
         let reflection = reflect(&validated, ENTRY)?;
+        let written = Arc::new(validated.clone());
         bound_loops(&mut validated.module, TRIPS);
         let is_large = |one: &Binding| {
             one.kind == BindingKind::Uniform && one.size.is_none_or(|size| size > UNIFORM_BYTES)
@@ -134,7 +164,10 @@ impl Sketch {
             return Err(sketch_refused(&format!("`{name}` returns no `vec4f` at location 0")));
         }
         let validated = Arc::new(validated);
-        Ok(Self { stage: ReadyStage::made(validated, ENTRY, reflection, "".into()) })
+        let functions = Arc::from(Vec::new());
+        let entry = ENTRY;
+        let stage = ReadyStage { validated, entry, reflection, text, map, written, functions };
+        Ok(Self { stage })
     }
 
     /// The inputs with the names of their sources.

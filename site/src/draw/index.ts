@@ -56,6 +56,20 @@ export function picture(request: Omit<PictureRequest, "target">): Promise<Pixels
     return queued(() => pictured((target) => toolchain.call(OWN, "pictureStart", { ...request, target })));
 }
 
+/** What the toolchain knows of a picture that the page drew. If another one was drawn since, this one is
+ * drawn again first. */
+export function looked<T extends { lacking: boolean }>(
+    request: Omit<PictureRequest, "target">, ask: (request: PictureRequest) => Promise<T>,
+): Promise<T> {
+    return queued(async () => {
+        const target = (await device())?.target ?? "wgsl";
+        const found = await ask({ ...request, target });
+        if (!found.lacking) return found;
+        await pictured((target) => toolchain.call(OWN, "pictureStart", { ...request, target }));
+        return ask({ ...request, target });
+    });
+}
+
 /** Milliseconds after which somebody who switched something should see a picture. */
 const SOON = 100;
 /** How much smaller a coarse picture is. */

@@ -11,7 +11,10 @@ import { FIRST, earlier, keep, linked, opened } from "../parts/project";
 import { LARGEST, type Project } from "../parts/state";
 import { Files } from "../parts/files";
 import { latest } from "../parts/latest";
+import type { Moment } from "../parts/lines";
+import { Listed } from "../parts/listed";
 import { Sketch } from "../parts/sketch";
+import { showValues, values } from "../parts/values";
 
 /** Milliseconds after which the page says that it still computes. */
 const PATIENCE = 1000;
@@ -24,18 +27,32 @@ export async function page(into: HTMLElement, given?: Project) {
     const value = h("output", {});
     const unkept = h("p", { class: "wrong", role: "alert", hidden: true },
         "The browser has no room to keep these files: they are lost when the page is closed. Save them as a zip.");
-    const sketch = new Sketch(() => state.look, () => { save(); link(); });
+    const shown = (moment: Moment | undefined) => {
+        [last, isEdited] = [moment, false];
+        place();
+        listed.show(moment);
+    };
+    const listed = new Listed((file) => Object.hasOwn(state.files, file));
+    const sketch = new Sketch(() => state.look, () => { save(); link(); }, true, shown);
     const panel = h("div", { class: "editor", id: "text", role: "tabpanel", "aria-label": "Text of the open file" });
     const leaving = h("p", { class: "note", id: "leaving" }, "Tab indents. Escape and then Tab leaves the editor.");
     const editor = new EditorView({ parent: panel });
 
+    /** What a pixel's run gave lines, and whether something was typed since. */
+    let last: Moment | undefined;
+    let isEdited = false;
+    const place = () => {
+        const { file, line } = last?.now ?? {};
+        const lines = last?.files.get(state.open);
+        showValues(editor, lines && { lines, now: file === state.open ? line : undefined });
+    };
     /** Letters of the files that are not open. */
     const others = () => Object.entries(state.files).reduce((sum, [name, text]) => sum + (name === state.open ? 0 : text.length), 0);
     const begin = () => editor.setState(EditorState.create({
         doc: state.files[state.open] ?? "",
         extensions: [
             // Bidirectional formatting characters and control characters are seen, so that a text reads as it is.
-            highlightSpecialChars(), lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), EditorView.lineWrapping,
+            highlightSpecialChars(), lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), values, EditorView.lineWrapping,
             EditorView.contentAttributes.of({ "aria-label": `Text of ${state.open}`, "aria-describedby": "leaving" }),
             EditorState.transactionFilter.of((change) => {
                 // Files that are too large already can be made smaller.
@@ -48,6 +65,7 @@ export async function page(into: HTMLElement, given?: Project) {
             EditorView.updateListener.of((update) => {
                 if (!update.docChanged) return;
                 state.files[state.open] = update.state.doc.toString();
+                isEdited = true;
                 changed();
             }),
         ],
@@ -98,9 +116,12 @@ export async function page(into: HTMLElement, given?: Project) {
         const found = `${made.ok ? "no errors" : "errors"}, ${Math.round(performance.now() - start)} ms`;
         mark(made.diagnostics);
         if (made.ok) outputs.replaceChildren(...output(made, target));
+        else sketch.suspend("The text has mistakes: values come back once it has none.");
         status.textContent = found;
         const isDrawn = /@fragment|\.frag(\.|$)/.test(`${state.files[state.open]}${state.open}`);
         sketch.element.hidden = !isDrawn;
+        // The values are of the text before.
+        if (!isDrawn && isEdited) shown(undefined);
         try {
             const number = await toolchain.call(typed(isOld), "evaluate", { files: state.files, expression: state.expression });
             value.textContent = number.value ?? number.diagnostics[0]?.message ?? "";
@@ -132,7 +153,7 @@ export async function page(into: HTMLElement, given?: Project) {
             return h("li", { class: one.severity }, h("code", {}, where), `${one.message} `, h("span", { class: "note" }, one.notes.join(" ")));
         }));
     }
-    const files = new Files(state, () => { begin(); changed(); });
+    const files = new Files(state, () => { begin(); place(); changed(); });
     const zipped = () => {
         const link = h("a", { href: URL.createObjectURL(zip(state.files)), download: "shaders.zip" });
         link.click();
@@ -170,7 +191,7 @@ export async function page(into: HTMLElement, given?: Project) {
                     languages,
                     h("button", { onclick: zipped }, "Save as zip"), h("button", { onclick: restart }, "Begin again"),
                     ...back),
-                unkept, sketch.element,
+                unkept, sketch.element, listed.element,
                 h("label", { class: "eval" }, h("span", {}, "value of"), expression, value), outputs)),
     );
     begin();

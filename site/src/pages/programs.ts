@@ -1,11 +1,13 @@
 import type { CostInfo, PictureControls, PictureRequest, Point, ProgramInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
 import { choose, h, reason, remember, repeated, route } from "../dom";
-import { Screen, device, picture } from "../draw";
+import { Screen, device, looked, picture } from "../draw";
 import { output, texts } from "../output";
 import { axes } from "../parts/axes";
 import { Lamps } from "../parts/lamps";
 import { latest } from "../parts/latest";
+import { Listed } from "../parts/listed";
+import { Pixel } from "../parts/pixel";
 import { Uniforms } from "../parts/uniforms";
 
 /** Numbers by name, as the address has them: `a:1,2;b:3`. */
@@ -33,6 +35,9 @@ function begun(query: URLSearchParams, path: string, published?: { program: stri
     };
 }
 
+/** Pixels along the edges of the picture. */
+const SIZE = 384;
+
 /** Letters of a key. The longest of the library's has some hundreds. */
 const LONGEST_KEY = 4096;
 
@@ -52,7 +57,10 @@ export async function page(into: HTMLElement) {
     }
     const state = begun(query, path, studio.presets.find((one) => one.name === query.get("preset")));
     type State = typeof state;
-    const canvas = h("canvas", { width: 256, height: 256, role: "img", "aria-label": "The picture" });
+    const canvas = h("canvas", {
+        width: 256, height: 256, role: "img", tabindex: "0",
+        "aria-label": "The picture. A click or Enter shows the values of a pixel, which arrow keys move until Escape.",
+    });
     const screen = new Screen(canvas);
     const over = h("div", { class: "picture" }, canvas);
     const status = h("p", { role: "status", class: "status" });
@@ -81,9 +89,15 @@ export async function page(into: HTMLElement) {
     let wanted = { texts: true, controls: true };
 
     const request = (): Omit<PictureRequest, "target"> => ({
-        program: found.name, key: point!.key, width: 384, height: 384, samples: 1,
+        program: found.name, key: point!.key, width: SIZE, height: SIZE, samples: 1,
         ...(state.environment && { environment: state.environment }), ...(state.preset && { preset: state.preset }), ...(state.scene && { scene: state.scene }),
         uniforms: state.set, lamps: state.lamps,
+    });
+    const listed = new Listed();
+    const pixel = new Pixel(over, canvas, {
+        size: [SIZE, SIZE], shown: (moment) => listed.show(moment),
+        run: (at) => looked(request(), (asked) => toolchain.call(OWN, "picturePixel", asked, at)),
+        marks: () => looked(request(), (asked) => toolchain.call(OWN, "pictureMarks", asked)),
     });
     // They are recorded, and do not change.
     const recorded = new Map<string, Promise<CostInfo>>();
@@ -107,6 +121,7 @@ export async function page(into: HTMLElement) {
             status.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms, ${requested.key || "default"}`;
             canvas.dataset.drawn = String(Number(canvas.dataset.drawn ?? 0) + 1);
             canvas.dataset.key = requested.key;
+            pixel.renew();
         } catch (error) {
             status.textContent = reason(error);
         }
@@ -184,7 +199,7 @@ export async function page(into: HTMLElement) {
     into.replaceChildren(
         h("h1", { class: "quiet" }, "Programs"),
         h("div", { class: "columns wide" },
-            h("div", {}, over, status,
+            h("div", {}, over, status, pixel.element, listed.element,
                 h("div", { class: "row" }, programChoice, scene, around, reset), info, form, costNote,
                 h("details", {}, h("summary", {}, "Uniforms"), numbers)),
             h("div", {}, h("div", { class: "row" }, targets, compare), text)),

@@ -4,6 +4,8 @@ import { type Limit, OWN, toolchain, typed } from "../client";
 import { choose, h, reason } from "../dom";
 import { Screen, device, sketch } from "../draw";
 import { latest } from "./latest";
+import type { Moment } from "./lines";
+import { Pixel, STILL } from "./pixel";
 import { Uniforms } from "./uniforms";
 
 /** What somebody chose, to be kept in a link. */
@@ -52,12 +54,14 @@ export class Sketch {
         });
         return input;
     });
+    #pixel?: Pixel;
     #known = "";
     #sources = "";
 
     /** `changed` is called when somebody changed the look. A text that somebody types has inputs to
-     * choose, and is given up if it takes long. */
-    constructor(look: () => Look, changed: () => void, isTyped = true) {
+     * choose, and is given up if it takes long. Where there is room for what a pixel's run gives, `shown`
+     * gets it. */
+    constructor(look: () => Look, changed: () => void, isTyped = true, shown?: (moment: Moment | undefined) => void) {
         this.#keptLook = look;
         this.#inputs.hidden = !isTyped;
         this.#isTyped = isTyped;
@@ -71,12 +75,35 @@ export class Sketch {
             oninput: () => { this.#look.exposure = Number(exposure.value); this.#again(false); },
         });
         exposure.value = String(look().exposure ?? 0);
+        const over = h("div", { class: "picture" }, this.#canvas);
+        if (shown) this.#pixel = this.#looked(over, shown);
         this.#listen();
-        this.element = h("section", { class: "sketch", "aria-label": "Picture" },
-            h("div", { class: "picture" }, this.#canvas), this.#status,
+        this.element = h("section", { class: "sketch", "aria-label": "Picture" }, over, this.#status, this.#pixel?.element,
             h("div", { class: "row" }, this.#models, h("label", {}, h("span", {}, "exposure"), exposure),
                 ...this.#lights.map((input) => h("label", {}, h("span", {}, input.ariaLabel!), input))),
             this.#inputs, this.#numbers);
+    }
+
+    /** Answers what runs for a pixel of the picture. */
+    #looked(over: HTMLElement, shown: (moment: Moment | undefined) => void): Pixel {
+        this.#canvas.ariaLabel += " A click or Enter shows the values of a pixel, which arrow keys move until Escape.";
+        const request = () => ({ ...this.#request(), target: "wgsl" });
+        const isOld = () => this.#isOld();
+        return new Pixel(over, this.#canvas, {
+            size: [SIZE, SIZE], shown,
+            run: (pixel) => toolchain.call(typed(isOld), "sketchPixel", request(), pixel),
+            marks: () => toolchain.call(typed(isOld), "sketchMarks", request()),
+        });
+    }
+
+    /** The text has mistakes, so that there is no picture of it. */
+    suspend(why: string) {
+        this.#pixel?.suspend(why);
+    }
+
+    #request() {
+        const { turn = [0, 0.3], lamp = LAMP, ...rest } = this.#look;
+        return { ...rest, turn, lamp, shader: this.#shader!, size: SIZE, samples: 4 };
     }
 
     get #look(): Look {
@@ -91,13 +118,18 @@ export class Sketch {
             this.#again(false);
         };
         let last: [number, number] | undefined;
+        let isMoving = false;
         const canvas = this.#canvas;
         canvas.addEventListener("pointerdown", (event) => {
             canvas.setPointerCapture(event.pointerId);
             last = [event.clientX, event.clientY];
+            isMoving = false;
         });
         canvas.addEventListener("pointermove", (event) => {
             if (!last) return;
+            // A hand that clicks is not quite still.
+            isMoving ||= Math.hypot(event.clientX - last[0], event.clientY - last[1]) > STILL;
+            if (!isMoving) return;
             turn((last[0] - event.clientX) / 100, (event.clientY - last[1]) / 100, event.shiftKey);
             last = [event.clientX, event.clientY];
         });
@@ -132,9 +164,8 @@ export class Sketch {
         if (!this.element.isConnected) return;
         const withControls = this.#controls;
         this.#controls = false;
-        const { turn = [0, 0.3], lamp = LAMP, ...rest } = this.#look;
-        this.#lights.forEach((input, axis) => { if (input !== document.activeElement) input.value = String(lamp[axis]); });
-        const request = { ...rest, turn, lamp, shader: this.#shader!, size: SIZE, samples: 4 };
+        const request = this.#request();
+        this.#lights.forEach((input, axis) => { if (input !== document.activeElement) input.value = String(request.lamp[axis]); });
         const isOldText = this.#isOld;
         const limit: Limit = this.#isTyped ? typed(() => isOld() || isOldText()) : OWN;
         // A coarse picture has one sample.
@@ -146,8 +177,10 @@ export class Sketch {
             if (!await this.#screen.show(take, isOld)) return;
             this.#canvas.dataset.drawn = String(Number(this.#canvas.dataset.drawn ?? 0) + 1);
             this.#status.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms`;
+            this.#pixel?.renew();
         } catch (error) {
             this.#status.textContent = reason(error);
+            this.#pixel?.suspend("There is no picture.");
             this.#controls ||= withControls;
         }
     });

@@ -29,6 +29,12 @@ export interface Toolchain {
     sketchStart: typeof raw.sketchStart;
     sketchControls: typeof raw.sketchControls;
     costs: typeof raw.costs;
+    sketchPixel: typeof raw.sketchPixel;
+    picturePixel: typeof raw.picturePixel;
+    markKinds: typeof raw.markKinds;
+    sketchMarks: typeof raw.sketchMarks;
+    pictureMarks: typeof raw.pictureMarks;
+    marksStep: typeof raw.marksStep;
 }
 
 /** An input stopped the toolchain. The next call finds it restarted. */

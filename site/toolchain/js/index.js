@@ -4,7 +4,8 @@ const NAMES = [
     "version", "targets", "library", "search", "written", "files", "file", "programs", "point",
     "compose", "compile", "lint", "evaluate", "curves", "reference", "studio", "pictureStart",
     "pictureFrames", "pictureControls", "sketchStart",
-    "sketchControls", "costs",
+    "sketchControls", "costs", "sketchPixel", "picturePixel", "markKinds", "sketchMarks",
+    "pictureMarks", "marksStep",
 ];
 
 export class Stopped extends Error {

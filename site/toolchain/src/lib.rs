@@ -6,6 +6,7 @@
 
 mod choose;
 mod cost;
+mod debug;
 mod diagnostic;
 mod library;
 mod linkers;

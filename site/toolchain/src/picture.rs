@@ -11,9 +11,9 @@
 
 mod controls;
 mod drawing;
-mod exchange;
+pub mod exchange;
 mod seen;
-mod sketch;
+pub mod sketch;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -29,6 +29,7 @@ use lamplight_execute::frame::{self, Frame};
 use lamplight_execute::kernel::Kernel;
 use lamplight_picture::frame::Programs;
 use lamplight_picture::{self as picture, Plan, PreparedPass, Shot, Surroundings};
+use lamplight::source::SourceSet;
 use lamplight_scenes::{ENVIRONMENTS, sets};
 use tsify::Ts;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -173,6 +174,24 @@ fn with_kept<T>(run: impl FnOnce(&Kept) -> T) -> Result<T, Vec<Diagnostic>> {
             *kept = Some(load()?);
         }
         kept.as_ref().map(run).ok_or_else(Vec::new)
+    })
+}
+
+/// Calls a function with the texts of the library's programs.
+pub fn with_texts<T>(run: impl FnOnce(&SourceSet) -> T) -> Result<T, Vec<Diagnostic>> {
+    with_kept(|kept| run(&kept.programs.texts()))
+}
+
+/// Calls a function with the picture that was drawn last; `None` if it was another one.
+pub fn with_last_picture<T>(
+    request: &PictureRequest,
+    run: impl FnOnce(&PreparedPass, &Shot) -> T,
+) -> Option<T> {
+    CURRENT.with_borrow(|current| {
+        let current = current.as_ref()?;
+        let is_it = matches!(&current.work, Work::Picture(last) if **last == *request);
+        let Ready { prepared, shot, before: _ } = current.ready.as_ref().filter(|_| is_it)?;
+        Some(run(prepared, shot))
     })
 }
 

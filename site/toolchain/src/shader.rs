@@ -25,7 +25,7 @@ use crate::package::{Files, Value, graph, manifest, packages};
 use crate::{Answer, answer};
 
 /// A root file and its settings, as for `lamplight compile`.
-#[derive(Deserialize, Tsify)]
+#[derive(Clone, PartialEq, Deserialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct ShaderRequest {
     /// The package; the library where it is left out.

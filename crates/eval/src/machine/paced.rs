@@ -107,6 +107,26 @@ impl<N: Number> Paced<N> {
         Ok(())
     }
 
+    /// A run of a quad with other arguments, of which another lane may be observed. The run itself
+    /// must not have begun.
+    ///
+    /// # Errors
+    /// Those of [`Machine::call`] about the arguments.
+    pub fn with_quad(
+        &self,
+        program: &Program,
+        arguments: [&[N]; 4],
+        lane: usize,
+    ) -> Result<Self, Error> {
+        let mut other = self.clone();
+        for (lane, arguments) in other.state.lanes.iter_mut().zip(arguments) {
+            let function = callable_function(program, self.function, arguments.len())?;
+            place_arguments(lane, function, arguments);
+        }
+        other.state.shown = lane & 3;
+        Ok(other)
+    }
+
     fn lane(&self) -> Option<&Lane<N>> {
         self.state.lanes.get(self.state.shown)
     }

@@ -23,6 +23,58 @@ pub struct PixelFragment {
     pub depth: f32,
 }
 
+/// Four fragments of one triangle, of which at least one is visible.
+#[derive(Debug, Clone)]
+pub struct VisibleQuad {
+    /// The item of the drawing that it belongs to.
+    pub item: usize,
+    /// Where its fragments are.
+    pub pixels: [(u32, u32); 4],
+    /// Which of them are visible.
+    pub covered: [bool; 4],
+    /// As in [`PixelFragment`].
+    pub arguments: [Vec<f32>; 4],
+}
+
+/// Everything that a view shows, without running the fragment stage. So nothing is discarded, and
+/// depths are those of the triangles.
+#[derive(Debug, Clone, Default)]
+pub struct VisibleFragments {
+    /// In no order.
+    pub quads: Vec<VisibleQuad>,
+    /// What the fragment stage reads for each item of the drawing.
+    pub resources: Vec<Resources>,
+}
+
+/// The visible fragments of a view.
+///
+/// # Errors
+/// Those of the vertex stage.
+pub fn visible_fragments(
+    drawing: &Drawing<'_>,
+    view: &Buffers,
+) -> Result<VisibleFragments, Diagnostic> {
+    let shading = Evaluated::new(drawing)?;
+    let textures = bound_textures(drawing);
+    let mut drawn = assembled(drawing, view, &shading, &textures)?;
+    drawn.seen.draw(&drawn.triangles, drawing.state);
+    let Some(taken) = shading.taken() else { return Ok(VisibleFragments::default()) };
+    let wiring = wire_stages(&shading.given(), &taken);
+    let screen = Screen { drawn: &drawn, size: drawing.size, wiring };
+    let visible = screen.visible(drawing.items.len()).into_iter().flatten();
+    let quads = visible.map(|quad| VisibleQuad {
+        item: quad.triangle.item,
+        pixels: quad.pixels,
+        covered: quad.covered,
+        arguments: screen.quad(&quad).arguments,
+    });
+    let resources = drawing.items.iter().map(|item| Resources {
+        buffers: item_buffers(drawing, view, item),
+        ..textures.clone()
+    });
+    Ok(VisibleFragments { quads: quads.collect(), resources: resources.collect() })
+}
+
 /// The fragments that cover the middle of a pixel in a view. With the depth test the nearest one is
 /// the first, otherwise the one that is drawn last.
 ///

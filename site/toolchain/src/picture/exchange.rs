@@ -9,7 +9,7 @@ use tsify::Tsify;
 use crate::diagnostic::Diagnostic;
 
 /// What is drawn, as `lamplight render` takes it.
-#[derive(Clone, Deserialize, Tsify)]
+#[derive(Clone, PartialEq, Deserialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct PictureRequest {
     /// A published example.

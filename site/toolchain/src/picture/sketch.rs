@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use lamplight::compose;
 use lamplight::diagnostic::Diagnostics;
 use lamplight::source::SourceSet;
-use lamplight::validate::validate;
 use lamplight_picture::sketch::{MODELS, SOURCES, Sketch, SketchOptions};
-use lamplight_picture::{Shot, Surroundings};
+use lamplight_picture::{PreparedPass, Shot, Surroundings};
 use lamplight_scenes::environment;
 use serde::{Deserialize, Serialize};
 use tsify::{Ts, Tsify};
@@ -21,7 +20,7 @@ use crate::shader::{ShaderRequest, composed_text};
 use crate::{Answer, answer};
 
 /// A fragment stage, and how it is drawn.
-#[derive(Deserialize, Tsify)]
+#[derive(Clone, PartialEq, Deserialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct SketchRequest {
     /// Its file and settings. `entry` names the entry point, if there are several.
@@ -90,11 +89,7 @@ const LAMP: [f64; 3] = [1.6, 2.0, 2.4];
 pub fn sketch_start(request: Ts<SketchRequest>) -> Answer<Step> {
     let request = request.to_rust()?;
     let mut sources = SourceSet::default();
-    let prepared = sketched(&request, &mut sources).and_then(|(sketch, setting)| {
-        let shot = shot(&request)?;
-        Ok((sketch.prepare(&setting, &shot)?, shot))
-    });
-    answer(&match prepared {
+    answer(&match prepared_sketch(&request, &mut sources) {
         Ok((prepared, shot)) => {
             let ready = Ready { prepared: Box::new(prepared), shot, before: 0 };
             begun(Work::Sketch(request.target), Some(ready))
@@ -130,12 +125,22 @@ pub fn sketch_controls(request: Ts<SketchRequest>) -> Answer<SketchControls> {
     answer(&controls)
 }
 
+/// A sketch on its model, with its camera.
+pub fn prepared_sketch(
+    request: &SketchRequest,
+    sources: &mut SourceSet,
+) -> Result<(PreparedPass, Shot), Diagnostics> {
+    let (sketch, setting) = sketched(request, sources)?;
+    let shot = shot(request)?;
+    Ok((sketch.prepare(&setting, &shot)?, shot))
+}
+
 fn sketched(
     request: &SketchRequest,
     sources: &mut SourceSet,
 ) -> Result<(Sketch, SketchOptions), Diagnostics> {
     let composed: compose::Composed = composed_text(&request.shader, sources)?;
-    let sketch = Sketch::new(validate(&composed)?, request.shader.entry.as_deref());
+    let sketch = Sketch::of_text(&composed, request.shader.entry.as_deref())?;
     let setting = SketchOptions {
         model: request.model.clone(),
         turn: request.turn,
@@ -143,7 +148,7 @@ fn sketched(
         inputs: request.inputs.clone(),
         uniforms: request.uniforms.clone(),
     };
-    Ok((sketch.map_err(|problem| vec![problem])?, setting))
+    Ok((sketch, setting))
 }
 
 fn shot(request: &SketchRequest) -> Result<Shot, Diagnostics> {
