@@ -172,7 +172,7 @@ fn neighbours(page: &BrowserPage) -> Outcome {
     wait(page, "document.querySelector('.pixel').dataset.lane === '3'")?;
     expect_endings(page, &[("let column", "column 161"), ("let side", "side -39")])?;
     let both = text(page, "document.querySelector('.run tbody tr').textContent")?;
-    assert_eq!(both, "return322 -39 0.25 1the same0 0 0 0320 -40 0.25 1");
+    assert_eq!(both, "return322 -39 0.25 1the same0320 -40 0.25 1");
     focus(page, ".sketch canvas")?;
     press(page, "ArrowRight")?;
     wait(page, "document.querySelector('.pixel').dataset.pixel === '161,150'")?;
@@ -287,7 +287,7 @@ fn program(opened: &Opened) -> Outcome {
         assert!((255.0 * coded - code).abs() <= 2.0, "the run gives {colour:?}, shown is {shown:?}");
     }
     let file = text(&page, "document.querySelector('.listing figcaption').textContent")?;
-    assert_eq!(file, "programs/forward.wesl");
+    assert_eq!(file, "lamplight/programs/forward.wesl");
     let took = text(&page, "document.querySelector('.pixel').dataset.took")?;
     println!("the answer for a pixel of `forward` came after {took} ms");
     without_errors(&mut page)

@@ -119,9 +119,9 @@ export async function page(into: HTMLElement, given?: Project) {
         else sketch.suspend("The text has mistakes: values come back once it has none.");
         status.textContent = found;
         const isDrawn = /@fragment|\.frag(\.|$)/.test(`${state.files[state.open]}${state.open}`);
-        sketch.element.hidden = !isDrawn;
-        // The values are of the text before.
-        if (!isDrawn && isEdited) shown(undefined);
+        if (!isDrawn && isEdited) sketch.suspend("The text has changed: open the file of the stage for new values.");
+        // Somebody who opens an imported file goes through the same run there.
+        sketch.element.hidden = !isDrawn && !last;
         try {
             const number = await toolchain.call(typed(isOld), "evaluate", { files: state.files, expression: state.expression });
             value.textContent = number.value ?? number.diagnostics[0]?.message ?? "";

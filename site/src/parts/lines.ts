@@ -35,8 +35,9 @@ export function moment(run: PixelRun, last: number): Moment {
         const lines = files.get(file) ?? new Map<number, Line>();
         files.set(file, lines);
         const known = lines.get(line) ?? { values: [], decided: [], marks: [] };
+        const isAgain = ({ name }: RunValue) => event.values.some((one) => one.name === name);
         lines.set(line, {
-            values: [...known.values, ...event.values], decided: [...known.decided, ...event.decided],
+            values: [...known.values.filter((one) => !isAgain(one)), ...event.values], decided: [...known.decided, ...event.decided],
             marks: [...known.marks, ...marks.get(number) ?? []],
         });
     }

@@ -46,20 +46,21 @@ export class Marks {
 
     /** The picture is another one now. */
     renew() {
-        this.#runs++;
-        this.#found.clear();
-        this.#known = false;
+        this.#forget();
         this.#show();
     }
 
-    /** Ends what runs, when the page is left. */
-    end() {
+    #forget() {
         this.#runs++;
+        this.#found.clear();
+        this.#known = false;
+        delete this.#canvas.dataset.looked;
     }
 
     #show() {
         this.#canvas.hidden = this.#chosen === NOTHING;
         if (this.#chosen === NOTHING) {
+            this.#forget();
             this.#status.textContent = "";
         } else if (this.#known) {
             this.#paint([...this.#found.keys()], true);
@@ -86,13 +87,13 @@ export class Marks {
     }
 
     async #steps(quads: number, now: number) {
-        let [count, left] = [8, quads];
+        let [count, left] = [1, quads];
+        const begun = toolchain.replaced;
         while (left > 0 && now === this.#runs && this.#canvas.isConnected) {
             const { pixels, marks, left: rest } = await toolchain.call(OWN, "marksStep", count);
             const took = toolchain.milliseconds;
             if (now !== this.#runs) return;
-            // Another page or a restart of the toolchain took the picture away.
-            if (!pixels.length && rest === 0) break;
+            if (toolchain.replaced !== begun) throw new Error("The toolchain was restarted: choose again.");
             left = rest;
             pixels.forEach((pixel, index) => this.#found.set(pixel, marks[index]));
             count = Math.max(1, Math.min(4096, Math.round(count * Math.min(4, STEP / Math.max(1, took)))));

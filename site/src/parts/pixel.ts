@@ -17,6 +17,8 @@ export type Asked = {
 
 /** Pixels that a pointer may move between pressing and releasing in a click. */
 export const STILL = 4;
+/** Milliseconds without another picture after which its values are asked for. */
+const SETTLED = 100;
 /** Pixels that an arrow key with Shift moves. */
 const FAR = 16;
 
@@ -40,6 +42,7 @@ export class Pixel {
     #status = h("p", { class: "note", role: "status" });
     #place?: [number, number];
     #lane?: number;
+    #timer = 0;
     #run?: PixelRun;
     /** The run of the pixel's own fragment. */
     #own?: PixelRun;
@@ -110,13 +113,18 @@ export class Pixel {
     /** The picture is drawn anew: what is chosen in it is asked for again. */
     renew() {
         this.marks.offer().catch((error) => { this.#status.textContent = reason(error); });
-        this.marks.renew();
-        this.#lane = undefined;
-        if (this.#place) this.#ask();
+        clearTimeout(this.#timer);
+        // While a model is turned, pictures go first.
+        this.#timer = window.setTimeout(() => {
+            this.marks.renew();
+            this.#lane = undefined;
+            if (this.#place) this.#ask();
+        }, SETTLED);
     }
 
     /** There is no picture for a while. */
     suspend(why: string) {
+        clearTimeout(this.#timer);
         this.marks.renew();
         if (!this.#place) return;
         this.#status.textContent = why;
