@@ -210,18 +210,23 @@ fn map(page: &BrowserPage) -> Outcome {
 }
 
 fn show_where(page: &BrowserPage, title: &str) -> Outcome {
+    choose_mark(page, title)?;
+    wait(page, "document.querySelector('.picture .over').dataset.looked !== undefined")
+}
+
+fn choose_mark(page: &BrowserPage, title: &str) -> Outcome {
     let script = format!(
         "(() => {{ const it = document.querySelector('.marks select'); it.value = {};
             it.dispatchEvent(new Event('change')); }})()",
         Value::from(title)
     );
     page.evaluate(&script, PATIENCE)?;
-    wait(page, "document.querySelector('.picture .over').dataset.looked !== undefined")
+    Ok(())
 }
 
 /// The same in GLSL, whose values are those of the translation, at the author's lines.
 fn translated(page: &BrowserPage) -> Outcome {
-    show_where(page, "nothing")?;
+    choose_mark(page, "nothing")?;
     page.evaluate(
         "[...document.querySelectorAll('[role=tab]')].find((it) => it.textContent === 'lit.frag.glsl').click()",
         PATIENCE,
@@ -284,7 +289,10 @@ fn program(opened: &Opened) -> Outcome {
             true => 12.92 * linear,
             false => 1.055 * linear.powf(1.0 / 2.4) - 0.055,
         };
-        assert!((255.0 * coded - code).abs() <= 2.0, "the run gives {colour:?}, shown is {shown:?}");
+        assert!(
+            (255.0 * coded - code).abs() <= 2.0,
+            "the run gives {colour:?}, shown is {shown:?}"
+        );
     }
     let file = text(&page, "document.querySelector('.listing figcaption').textContent")?;
     assert_eq!(file, "lamplight/programs/forward.wesl");

@@ -4,8 +4,8 @@ use lamplight_compose::SourceMap;
 use lamplight_diagnostic::source::{SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_eval::{
-    Error, Function, FunctionId, LOOP_LIMIT, Machine, Number, Observer, Paced, Program, Resources, Shape,
-    SlotKind, Variable, VariableKind,
+    Error, Function, FunctionId, LOOP_LIMIT, Machine, Number, Observer, Paced, Program, Resources,
+    Shape, SlotKind, Variable, VariableKind,
 };
 use lamplight_lint::{DocumentedParameter, documented_parameters};
 use lamplight_syntax::words::words;

@@ -18,9 +18,7 @@ use lamplight_execute::frame::{
     Buffers, DrawItem, Drawing, EntryPoint, Frame, Mesh, PipelineState,
 };
 use lamplight_execute::kernel::SENTINEL;
-use lamplight_execute::raster::{
-    PixelFragment, VisibleFragments, fragments_at, visible_fragments,
-};
+use lamplight_execute::raster::{PixelFragment, VisibleFragments, fragments_at, visible_fragments};
 use lamplight_scenes::linear_from_srgb;
 
 /// A pass with everything that it is drawn with.

@@ -27,10 +27,10 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_emit::reflect;
 use lamplight_execute::fixture::Fixture;
 use lamplight_execute::frame::{Buffers, PipelineState};
+use lamplight_glsl::wgsl::Clip;
 use lamplight_permute::Settings;
 use lamplight_scenes::Shape;
 use lamplight_scenes::sets::{Eye, Material, Object};
-use lamplight_glsl::wgsl::Clip;
 use lamplight_validate::{Validated, glsl_as_wgsl, of_translation, validate};
 
 /// What an input can be given: a name, and the words in names of inputs that suggest it. The
@@ -117,7 +117,8 @@ impl Sketch {
             false => errors,
         })?;
         let map = Arc::new(read.map.clone());
-        Self::made(validated, entry, read.text.as_str().into(), map).map_err(|problem| vec![problem])
+        Self::made(validated, entry, read.text.as_str().into(), map)
+            .map_err(|problem| vec![problem])
     }
 
     /// A fragment entry point of a module: the first, unless one is named.

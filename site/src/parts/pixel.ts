@@ -26,6 +26,9 @@ const MOVES: Record<string, [number, number]> = {
     ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
 };
 
+/** Whether a pixel was asked for since the page was loaded: the first time, the browser compiles what runs. */
+let isWarm = false;
+
 export class Pixel {
     readonly element: HTMLElement;
     readonly marks: Marks;
@@ -43,6 +46,7 @@ export class Pixel {
     #place?: [number, number];
     #lane?: number;
     #timer = 0;
+    #isDrawn = false;
     #run?: PixelRun;
     /** The run of the pixel's own fragment. */
     #own?: PixelRun;
@@ -62,7 +66,16 @@ export class Pixel {
         this.#listen();
     }
 
+    /** Somebody who points to the picture is likely to click: the first answer shall be as fast as others. */
+    #warm() {
+        if (isWarm || !this.#isDrawn) return;
+        isWarm = true;
+        const [x, y] = this.#asked.size.map((side) => side >> 1);
+        this.#asked.run({ x, y }).catch(() => { isWarm = false; });
+    }
+
     #listen() {
+        for (const event of ["pointerenter", "focus"]) this.#canvas.addEventListener(event, () => this.#warm());
         let start: [number, number] | undefined;
         this.#canvas.addEventListener("pointerdown", ({ clientX, clientY }) => { start = [clientX, clientY]; });
         this.#canvas.addEventListener("click", ({ clientX, clientY }) => {
@@ -112,6 +125,7 @@ export class Pixel {
 
     /** The picture is drawn anew: what is chosen in it is asked for again. */
     renew() {
+        this.#isDrawn = true;
         this.marks.offer().catch((error) => { this.#status.textContent = reason(error); });
         clearTimeout(this.#timer);
         // While a model is turned, pictures go first.
@@ -136,6 +150,7 @@ export class Pixel {
         if (!this.#place || !this.element.isConnected) return;
         const [[x, y], lane] = [this.#place, this.#lane];
         const start = performance.now();
+        isWarm = true;
         try {
             const run = await this.#asked.run({ x, y, lane });
             if (isOld() || !this.#place) return;

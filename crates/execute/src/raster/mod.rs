@@ -25,9 +25,7 @@ use lamplight_validate::inner_blocks;
 pub use measured::{Measure, Measured, Measuring};
 pub use metal::CompiledStages;
 use naga::{Binding, Block, BuiltIn, FunctionResult, Module, ShaderStage, Statement, TypeInner};
-pub use pixel::{
-    PixelFragment, VisibleFragments, VisibleQuad, fragments_at, visible_fragments,
-};
+pub use pixel::{PixelFragment, VisibleFragments, VisibleQuad, fragments_at, visible_fragments};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;

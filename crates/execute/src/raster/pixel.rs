@@ -68,10 +68,10 @@ pub fn visible_fragments(
         covered: quad.covered,
         arguments: screen.quad(&quad).arguments,
     });
-    let resources = drawing.items.iter().map(|item| Resources {
-        buffers: item_buffers(drawing, view, item),
-        ..textures.clone()
-    });
+    let resources = drawing
+        .items
+        .iter()
+        .map(|item| Resources { buffers: item_buffers(drawing, view, item), ..textures.clone() });
     Ok(VisibleFragments { quads: quads.collect(), resources: resources.collect() })
 }
 

@@ -62,10 +62,10 @@ thread_local! {
 #[wasm_bindgen(js_name = sketchPixel)]
 pub fn sketch_pixel(request: Ts<SketchRequest>, pixel: Ts<PixelChoice>) -> Answer<PixelRun> {
     let (request, pixel) = (request.to_rust()?, pixel.to_rust()?);
-    answer(&with_sketch(request, |prepared, shot, sources| {
-        pixel_run(prepared, shot, sources, pixel)
-    })
-    .unwrap_or_else(|(sources, problems)| PixelRun::failed(&sources, &problems)))
+    answer(
+        &with_sketch(request, |prepared, shot, sources| pixel_run(prepared, shot, sources, pixel))
+            .unwrap_or_else(|(sources, problems)| PixelRun::failed(&sources, &problems)),
+    )
 }
 
 /// The same for the picture of a program, which is to be the last one that was drawn; otherwise the
@@ -128,12 +128,8 @@ fn pixel_run(
     let PictureFragment { fragment, stage } = fragments.swap_remove(0);
     let own = fragment.lane as u32;
     let lane = pixel.lane.map_or(own, |lane| lane & 3);
-    let text = SubjectText {
-        module: &stage.written.module,
-        text: &stage.text,
-        map: &stage.map,
-        sources,
-    };
+    let text =
+        SubjectText { module: &stage.written.module, text: &stage.text, map: &stage.map, sources };
     let call = Call::Quad(fragment.arguments, lane as usize);
     let subject = Subject::new(text, stage.entry, call, fragment.resources)
         .map(|subject| subject.with_loop_limit(TRIPS));

@@ -150,7 +150,9 @@ fn recorded_turns(subject: &Subject, text: SubjectText<'_>, options: Options) ->
     };
     match ended {
         Ok(ended) => run.discarded = ended.is_discarded,
-        Err(error) => run.diagnostics = diagnostics(text.sources, &vec![diagnosed(&error, text.map)]),
+        Err(error) => {
+            run.diagnostics = diagnostics(text.sources, &vec![diagnosed(&error, text.map)])
+        }
     }
     run
 }

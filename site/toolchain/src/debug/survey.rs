@@ -93,8 +93,10 @@ thread_local! {
 /// The kinds of marks, in the order of their bits.
 #[wasm_bindgen(js_name = markKinds)]
 pub fn mark_kinds() -> Answer<MarkKinds> {
-    let named =
-        |(name, title): &(&str, &str)| MarkKind { name: (*name).to_owned(), title: (*title).to_owned() };
+    let named = |(name, title): &(&str, &str)| MarkKind {
+        name: (*name).to_owned(),
+        title: (*title).to_owned(),
+    };
     let unfinished =
         MarkKind { name: "unfinished".to_owned(), title: "Run that does not end".to_owned() };
     answer(&MarkKinds { kinds: Mark::KINDS.iter().map(named).chain([unfinished]).collect() })
