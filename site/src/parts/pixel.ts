@@ -22,6 +22,8 @@ const SETTLED = 100;
 /** Pixels that an arrow key with Shift moves. */
 const FAR = 16;
 
+const HINT = "Click on a pixel: the values of its run stand at the lines.";
+
 const MOVES: Record<string, [number, number]> = {
     ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
 };
@@ -62,7 +64,7 @@ export class Pixel {
         } },
             h("div", { class: "row" }, this.#title, close), this.#quad, this.#problems,
             h("label", {}, h("span", {}, "step of the run"), this.#step), this.#now, this.#found);
-        this.element = h("div", { class: "pixel" }, this.marks.element, this.#status, this.#panel);
+        this.element = h("div", { class: "pixel" }, this.#status, this.marks.element, this.#panel);
         this.#listen();
     }
 
@@ -117,7 +119,7 @@ export class Pixel {
         this.#place = this.#run = this.#own = undefined;
         this.#mark();
         this.#panel.hidden = true;
-        this.#status.textContent = "";
+        this.#status.textContent = HINT;
         delete this.element.dataset.pixel;
         this.#asked.shown(undefined);
         if (this.element.contains(document.activeElement)) this.#canvas.focus();
@@ -126,6 +128,7 @@ export class Pixel {
     /** The picture is drawn anew: what is chosen in it is asked for again. */
     renew() {
         this.#isDrawn = true;
+        if (!this.#place) this.#status.textContent = HINT;
         this.marks.offer().catch((error) => { this.#status.textContent = reason(error); });
         clearTimeout(this.#timer);
         // While a model is turned, pictures go first.
