@@ -298,6 +298,10 @@ fn program(opened: &Opened) -> Outcome {
     assert_eq!(file, "lamplight/programs/forward.wesl");
     let took = text(&page, "document.querySelector('.pixel').dataset.took")?;
     println!("the answer for a pixel of `forward` came after {took} ms");
+    let phone = json!({ "width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": false });
+    page.call("Emulation.setDeviceMetricsOverride", phone)?;
+    let wide = page.evaluate("document.documentElement.scrollWidth", PATIENCE)?;
+    assert_eq!(wide, json!(390), "with a run, the page is wider than a phone");
     without_errors(&mut page)
 }
 
