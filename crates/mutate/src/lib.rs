@@ -11,6 +11,7 @@
 //! another reason, are listed in `survivors.toml` at the package's root.
 
 mod coverage;
+mod limit;
 mod report;
 mod shared;
 mod site;

@@ -13,9 +13,10 @@ use lamplight_testing::snapshot;
 use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
+type Case = fn() -> Outcome;
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [(&str, fn() -> Outcome); 3] = [
+    let cases: [(&str, Case); 3] = [
         ("page", page),
         ("formulas_notice_nothing", formulas_notice_nothing),
         ("integrals_notice", integrals_notice),
@@ -30,7 +31,7 @@ fn measured(library: &Library, modules: &[String]) -> Result<SharedReport, Faile
 }
 
 /// Modules that are quick to measure.
-const QUICK: &[&str] = &["fog::height", "lighting::spot", "lighting::units", "surface::view"];
+const QUICK: [&str; 4] = ["fog::height", "lighting::spot", "lighting::units", "surface::view"];
 
 const PAGE: &str = "docs/mutants.md";
 const START: &str = "<!-- measured -->\n";
@@ -47,7 +48,7 @@ fn page() -> Outcome {
         std::fs::write(&file, format!("{head}{START}{}", tables(&report)))?;
         return if report.passed() { Ok(()) } else { Err(report.summary().into()) };
     }
-    let report = measured(&library, &QUICK.map_to_modules())?;
+    let report = measured(&library, &QUICK.map(str::to_owned))?;
     let rows = report.functions();
     let missing: Vec<&str> =
         rows.iter().map(|(_, row)| row.as_str()).filter(|row| !text.contains(row)).collect();
@@ -77,16 +78,6 @@ fn tables(report: &SharedReport) -> String {
         section("Missed", &report.list(SharedFate::Missed)),
         section("Within the error", &report.list(SharedFate::WithinError)),
     )
-}
-
-trait Modules {
-    fn map_to_modules(&self) -> Vec<String>;
-}
-
-impl Modules for [&str] {
-    fn map_to_modules(&self) -> Vec<String> {
-        self.iter().map(|module| (*module).to_owned()).collect()
-    }
 }
 
 const SHARE: &str = "fn share(x: f32) -> f32 {\n    return clamp(2.0 * x, 0.0, 1.0);\n}\n";

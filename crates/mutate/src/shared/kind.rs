@@ -11,6 +11,8 @@ pub enum Kind {
     Guard,
     /// The number of a guard: of a bound, or of a comparison.
     Bound,
+    /// A guard that the source does not have: results are kept at least 0, or at most 1.
+    Added,
     /// Another number.
     Constant,
     /// The order of operands, arguments or components.
@@ -18,12 +20,13 @@ pub enum Kind {
 }
 
 impl Kind {
-    pub const ALL: [Self; 4] = [Self::Guard, Self::Bound, Self::Constant, Self::Order];
+    pub const ALL: [Self; 5] = [Self::Guard, Self::Bound, Self::Added, Self::Constant, Self::Order];
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Guard => "guard left out",
             Self::Bound => "number of a guard",
+            Self::Added => "guard put in",
             Self::Constant => "other number",
             Self::Order => "order",
         }
@@ -31,7 +34,7 @@ impl Kind {
 
     /// Whether the mistake is in a guard.
     pub fn is_of_guard(self) -> bool {
-        matches!(self, Self::Guard | Self::Bound)
+        matches!(self, Self::Guard | Self::Bound | Self::Added)
     }
 }
 
@@ -40,6 +43,7 @@ pub fn kind_of(function: &Function, site: &Site) -> Option<Kind> {
     match &site.edit {
         Mutation::Expression { at, how, .. } => of_expression(function, *at, *how),
         Mutation::NoExit { .. } | Mutation::Decided { .. } => Some(Kind::Guard),
+        Mutation::Limited(_) => Some(Kind::Added),
         Mutation::Exchanged { .. } => Some(Kind::Order),
         Mutation::Negated { .. } | Mutation::NoStore { .. } | Mutation::Argument { .. } => None,
     }

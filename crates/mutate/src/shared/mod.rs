@@ -23,6 +23,7 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_validate::on_large_stack;
 use rayon::prelude::*;
 
+use crate::limit::limit_sites;
 use crate::report::{Fate, Listed, MutantOutcome, read_list};
 use crate::site::{QuotedSource, Site, mutation_sites};
 use crate::suite::{self, ReadyCase, Subject, Suite};
@@ -66,8 +67,9 @@ fn wanted_mutants<'a, 's>(suite: &'a Suite<'s>) -> Vec<SharedMutant<'a, 's>> {
     let of_subject = |subject: &'a Subject| {
         let source = references::find_source(&suite.module, &subject.name);
         let function = &suite.whole.functions[subject.function];
+        let limits = limit_sites(&suite.whole, subject.function);
         let sites = mutation_sites(&suite.whole, &suite.info, subject.function);
-        sites.into_iter().filter_map(move |site| {
+        sites.into_iter().chain(limits).filter_map(move |site| {
             let kind = kind::kind_of(function, &site)?;
             let all = matches!(source, Some(Source::Integral | Source::Specification));
             (all || kind.is_of_guard()).then_some(SharedMutant {
