@@ -16,8 +16,9 @@ type Outcome = Result<(), Failed>;
 type Case = fn() -> Outcome;
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [(&str, Case); 3] = [
+    let cases: [(&str, Case); 4] = [
         ("page", page),
+        ("guards_put_in", guards_put_in),
         ("formulas_notice_nothing", formulas_notice_nothing),
         ("integrals_notice", integrals_notice),
     ];
@@ -82,8 +83,8 @@ fn tables(report: &SharedReport) -> String {
 
 const SHARE: &str = "fn share(x: f32) -> f32 {\n    return clamp(2.0 * x, 0.0, 1.0);\n}\n";
 
-fn of_package(cases: &str) -> Result<SharedReport, Failed> {
-    let files = [("mine.wesl", SHARE), ("mine.toml", cases)];
+fn of_package(module: &str, cases: &str) -> Result<SharedReport, Failed> {
+    let files = [("mine.wesl", module), ("mine.toml", cases)];
     let files = files.iter().map(|(path, text)| ((*path).to_owned(), (*text).to_owned())).collect();
     measured(&Library::new("mine", Arc::new(Memory(files)), Vec::new()), &["mine".to_owned()])
 }
@@ -101,7 +102,7 @@ fn formulas_notice_nothing() -> Outcome {
         (&range, "noticed 4 of 5 shared mistakes"),
         (&stated, "noticed 5 of 5 shared mistakes"),
     ] {
-        let report = of_package(cases)?;
+        let report = of_package(SHARE, cases)?;
         if report.summary() != expected {
             let found = format!("{}{}", report.missed(), report.summary());
             return Err(format!("expected `{expected}` for\n{cases}\nfound\n{found}").into());
@@ -113,10 +114,29 @@ fn formulas_notice_nothing() -> Outcome {
 /// A mistake is put into all functions that a law is about.
 fn integrals_notice() -> Outcome {
     let cases = "[[case]]\nfunction = \"share\"\noracle = \"none\"\nlaws = [{ area = \"share\", along = \"x\", from = 0, to = 1, gives = 0.75, within = 1e-3, steps = 64 }]\ninputs = { x = 1 }\n";
-    let report = of_package(cases)?;
+    let report = of_package(SHARE, cases)?;
     let by = report.functions().into_iter().map(|(_, row)| row).collect::<String>();
     match by.contains("`area`") {
         true => Ok(()),
         false => Err(format!("expected that the integral notices a mistake: {by}").into()),
     }
+}
+
+/// Numbers outside of [0, 1] notice that results are limited to it, in every branch.
+fn guards_put_in() -> Outcome {
+    let module = "fn bent(x: f32) -> vec2f {\n    if (x < 0.0) {\n        return vec2f(x, 0.5);\n    }\n    return vec2f(0.5, 2.0 * x);\n}\n";
+    let cases = |rows: &str| format!("[[case]]\nfunction = \"bent\"\nrows = [{rows}]\n");
+    let inside = "{ x = 0.25, expect = [0.5, 0.5] }";
+    let outside =
+        format!("{inside}, {{ x = -1, expect = [-1, 0.5] }}, {{ x = 3, expect = [0.5, 6] }}");
+    for (rows, fate) in [(inside, SharedFate::WithinError), (&outside, SharedFate::Noticed("rows"))]
+    {
+        let report = of_package(module, &cases(rows))?;
+        let limits = report.outcomes.iter().filter(|one| one.mistake.starts_with("results of"));
+        let fates: Vec<SharedFate> = limits.map(|one| one.fate).collect();
+        if fates != [fate; 2] {
+            return Err(format!("expected {fate:?} twice for {rows}, found {fates:?}").into());
+        }
+    }
+    Ok(())
 }
