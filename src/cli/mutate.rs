@@ -11,7 +11,7 @@ use super::failure::Failure;
 use super::terminal::stdout;
 use crate::LIBRARY_FILES;
 use crate::check::library::Library;
-use crate::mutate::{measure_coverage, run_mutants};
+use crate::mutate::{SHARED_HEAD, measure_coverage, run_mutants, run_shared_mutants};
 use crate::source::{Disk, SourceSet};
 
 /// Put mistakes into functions, one at a time, and see whether the numeric cases notice.
@@ -25,15 +25,18 @@ pub struct Arguments {
     /// Instead, report the statements and branches that no case reaches.
     #[arg(long)]
     coverage: bool,
+    /// Put mistakes into a function and its reference alike: only numbers that cases state, and laws, can notice them.
+    #[arg(long, conflicts_with = "coverage")]
+    shared: bool,
 }
 
 pub fn run_mutate(arguments: Arguments) -> Result<(), Failure> {
     let library = open_library(&arguments)?;
     let modules = requested_modules(&library, &arguments.module)?;
-    if arguments.coverage {
-        print_coverage(&library, &modules)
-    } else {
-        print_survivors(&library, &modules)
+    match arguments {
+        Arguments { coverage: true, .. } => print_coverage(&library, &modules),
+        Arguments { shared: true, .. } => print_shared(&library, &modules),
+        _ => print_survivors(&library, &modules),
     }
 }
 
@@ -76,6 +79,22 @@ fn print_survivors(library: &Library, modules: &[String]) -> Result<(), Failure>
     writeln!(stdout(), "{} more are listed as equal to the code as written", report.equivalent())?;
     writeln!(stdout(), "{}", report.summary())?;
     if report.passed() { Ok(()) } else { Err(Failure::check("the cases notice too few mistakes")) }
+}
+
+fn print_shared(library: &Library, modules: &[String]) -> Result<(), Failure> {
+    let sources = Mutex::new(SourceSet::default());
+    let report = run_shared_mutants(library, &sources, modules);
+    let report = report.map_err(|diagnostics| {
+        Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics)
+    })?;
+    writeln!(stdout(), "{SHARED_HEAD}")?;
+    report.functions().iter().try_for_each(|(_, row)| writeln!(stdout(), "{row}"))?;
+    write!(stdout(), "\n{}", report.missed())?;
+    writeln!(stdout(), "{}", report.summary())?;
+    match report.passed() {
+        true => Ok(()),
+        false => Err(Failure::check("the cases notice too few mistakes that the references share")),
+    }
 }
 
 fn print_coverage(library: &Library, modules: &[String]) -> Result<(), Failure> {

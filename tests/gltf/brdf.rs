@@ -43,20 +43,28 @@ pub struct Surface {
     pub is_unlit: bool,
 }
 
-/// Where the library does more than the sample implementation of the appendix, and says so.
+/// What is not printed in appendix B or in the extension. Each of these has a row without it.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Choices {
     /// Highlights gain what facets reflect several times: the appendix suggests it in B.2.3, by Turquin
-    /// (2019), equation 16: `1 + f0 (1 - E)/E`.
+    /// (2019), equation 16: `1 + f0 (1 - E)/E`. Coats and thin films have no gain.
     pub multiple: bool,
-    /// Thin films have the colours of the viewer's angle, as in the glTF Sample Renderer. The text has the
-    /// angle of the half vector.
+    /// Thin films have the colours of the viewer's angle, as in the glTF Sample Renderer (`pbr.frag`).
+    /// The text has the angle of the half vector.
     pub film_of_viewer: bool,
+    /// The Fresnel term of a light behind the surface is that of its mirror image, as in the glTF Sample
+    /// Renderer for KHR_materials_diffuse_transmission (`l_mirror` in `pbr.frag`). For
+    /// KHR_materials_transmission, only the library has it. The text has the half vector of the light itself.
+    pub mirrored_fresnel: bool,
+    /// Tangents that are absent follow the coordinates after KHR_texture_transform, as in the glTF Sample
+    /// Renderer (`getNormalInfo`). The text says "texture coordinates associated with the normal texture".
+    pub transformed_tangents: bool,
     /// Sheen has the visibility that the extension names for slow devices (Ashikhmin, Premoze).
     pub simple_sheen: bool,
-    /// The least alpha of a highlight.
-    pub least_alpha: f64,
 }
+
+/// B.3.2, the note: alpha is not 0, but limited to a small number.
+const LEAST_ALPHA: f64 = 1e-6;
 
 fn heaviside(x: f64) -> f64 {
     if x > 0.0 { 1.0 } else { 0.0 }
@@ -78,8 +86,6 @@ fn visibility(nl: f64, nv: f64, hl: f64, hv: f64, alpha: f64) -> f64 {
 }
 
 /// B.3.2 for a normal, or KHR_materials_anisotropy for two alphas and the directions that they are along.
-/// The extension's code ends with a clamp of the visibility to 1, which the appendix does not have for the
-/// same lobe; it is left out.
 #[derive(Debug, Clone, Copy)]
 pub enum Lobe {
     Even { normal: DVec3, alpha: f64 },
@@ -110,7 +116,8 @@ impl Lobe {
                 let part = |w: DVec3| {
                     DVec3::new(along * tangent.dot(w), across * bitangent.dot(w), n.dot(w))
                 };
-                0.5 / (nl * part(v).length() + nv.abs() * part(l).length()) * d
+                let visibility = 0.5 / (nl * part(v).length() + nv.abs() * part(l).length());
+                visibility.clamp(0.0, 1.0) * d
             }
         }
     }
@@ -171,13 +178,13 @@ fn schlick(f0: DVec3, f90: f64, cosine: f64) -> DVec3 {
 }
 
 impl Surface {
-    fn alpha(&self, choices: Choices) -> f64 {
-        (self.roughness * self.roughness).max(choices.least_alpha)
+    fn alpha(&self) -> f64 {
+        (self.roughness * self.roughness).max(LEAST_ALPHA)
     }
 
     /// The lobe of the base.
-    pub fn lobe(&self, choices: Choices) -> Lobe {
-        let (normal, alpha) = (self.normal, self.alpha(choices));
+    pub fn lobe(&self) -> Lobe {
+        let (normal, alpha) = (self.normal, self.alpha());
         if self.anisotropy == 0.0 {
             return Lobe::Even { normal, alpha };
         }
@@ -185,14 +192,14 @@ impl Surface {
         let along = alpha + (1.0 - alpha) * self.anisotropy * self.anisotropy;
         let [x, y] = self.brush;
         let tangent = (self.tangent * x + self.bitangent * y).normalize();
-        let bitangent = normal.cross(tangent).normalize();
+        let bitangent = self.plain_normal.cross(tangent).normalize();
         Lobe::Brushed { normal, tangent, bitangent, along, across: alpha }
     }
 
     /// The lobe of the coat (KHR_materials_clearcoat).
-    pub fn coat_lobe(&self, choices: Choices) -> Lobe {
+    fn coat_lobe(&self) -> Lobe {
         let rough = self.clearcoat_roughness;
-        Lobe::Even { normal: self.plain_normal, alpha: (rough * rough).max(choices.least_alpha) }
+        Lobe::Even { normal: self.plain_normal, alpha: (rough * rough).max(LEAST_ALPHA) }
     }
 
     /// KHR_materials_ior and KHR_materials_specular: what a dielectric reflects straight back, without
@@ -203,68 +210,69 @@ impl Surface {
     }
 
     /// The radiance that leaves towards the viewer, of a light that gives a surface facing it the
-    /// irradiance 1. `albedos` are those of the lobes of base and coat, for `Choices::multiple`.
-    pub fn reflected(&self, l: DVec3, choices: Choices, albedos: [f64; 2]) -> DVec3 {
+    /// irradiance 1. `albedo` is that of the lobe of the base, for `Choices::multiple`.
+    pub fn reflected(&self, l: DVec3, choices: Choices, albedo: f64) -> DVec3 {
         let (n, v) = (self.normal, self.view);
         let (nl, nv) = (n.dot(l), n.dot(v));
-        let mut light = self.base_layers(l, choices, albedos[0]);
+        let mut light = self.base_layers(l, choices, albedo);
         if self.sheen_color != DVec3::ZERO {
             light = self.with_sheen(light, l, nl, nv, choices);
         }
         if self.clearcoat > 0.0 {
-            // KHR_materials_clearcoat: `fresnel_coat`.
+            // KHR_materials_clearcoat: `fresnel_coat` over `clearcoat_brdf`.
             let nc = self.plain_normal;
             let fresnel = schlick(DVec3::splat(0.04), 1.0, nc.dot(v)).x * self.clearcoat;
-            let gain = if choices.multiple { 1.0 / albedos[1] } else { 1.0 };
             let lit = nc.dot(l).max(0.0);
-            let coat =
-                if lit > 0.0 { self.coat_lobe(choices).brdf(l, v) * lit * gain } else { 0.0 };
+            let coat = if lit > 0.0 { self.coat_lobe().brdf(l, v) * lit } else { 0.0 };
             light = light * (1.0 - fresnel) + coat * fresnel;
         }
         light
+    }
+
+    /// The cosine of B.3.4, with `H` of B.3.1.
+    fn fresnel_cosine(&self, l: DVec3, choices: Choices) -> f64 {
+        let (n, v) = (self.normal, self.view);
+        let behind = n.dot(l).min(0.0);
+        let l = if choices.mirrored_fresnel { l - n * (2.0 * behind) } else { l };
+        v.dot((l + v).normalize()).abs()
     }
 
     /// B.3.5 with KHR_materials_ior, _specular, _iridescence, _transmission and _diffuse_transmission.
     fn base_layers(&self, l: DVec3, choices: Choices, albedo: f64) -> DVec3 {
         let (n, v) = (self.normal, self.view);
         let nl = n.dot(l);
-        // A light behind what lets light pass has the Fresnel term of its mirror image, which is the
-        // half vector of KHR_materials_transmission.
-        let mirrored = if nl < 0.0 { l - n * (2.0 * nl) } else { l };
-        let cosine = v.dot((mirrored + v).normalize()).abs();
+        let cosine = self.fresnel_cosine(l, choices);
         let (dielectric_f0, metal_f0) = (self.dielectric_f0(), self.base);
-        let mut dielectric = schlick(dielectric_f0, 1.0, cosine) * self.specular;
-        let mut metal = schlick(metal_f0, 1.0, cosine);
-        if self.iridescence > 0.0 {
-            let angle = if choices.film_of_viewer { n.dot(v).abs() } else { cosine };
-            let film = |f0: DVec3| film_fresnel(self.film_ior, f0, self.film_thickness, angle);
-            let [of_dielectric, of_metal] = match choices.film_of_viewer {
-                // The Sample Renderer has one film over the mix of both.
-                true => {
-                    let mixed = dielectric_f0.lerp(metal_f0, self.metallic);
-                    [film(mixed) * self.specular, film(mixed)]
-                }
-                false => [film(dielectric_f0 * self.specular), film(metal_f0)],
-            };
-            dielectric = dielectric.lerp(of_dielectric, self.iridescence);
-            metal = metal.lerp(of_metal, self.iridescence);
-        }
-        let below = self.below(l, choices) * (1.0 - dielectric.max_element());
         let gain = |f0: DVec3| match choices.multiple {
             true => DVec3::ONE + f0 * ((1.0 - albedo) / albedo),
             false => DVec3::ONE,
         };
-        let lobe = if nl > 0.0 { self.lobe(choices).brdf(l, v) * nl } else { 0.0 };
-        let dielectric = below + dielectric * gain(dielectric_f0) * lobe;
-        dielectric * (1.0 - self.metallic) + metal * gain(metal_f0) * (lobe * self.metallic)
+        // KHR_materials_specular: `fresnel_mix`, and B.3.4: `conductor_fresnel`.
+        let mut share = schlick(dielectric_f0, 1.0, cosine) * self.specular;
+        let mut metal = schlick(metal_f0, 1.0, cosine) * gain(metal_f0);
+        let mut dielectric = share * gain(dielectric_f0);
+        if self.iridescence > 0.0 {
+            // KHR_materials_iridescence: `iridescent_dielectric_layer` and `iridescent_conductor_layer`.
+            let angle = if choices.film_of_viewer { n.dot(v).abs() } else { cosine };
+            let film = |f0: DVec3| film_fresnel(self.film_ior, f0, self.film_thickness, angle);
+            let of_dielectric = film(dielectric_f0 * self.specular);
+            let of_metal = film(metal_f0);
+            share = share.lerp(of_dielectric, self.iridescence);
+            dielectric = dielectric.lerp(of_dielectric, self.iridescence);
+            metal = metal.lerp(of_metal, self.iridescence);
+        }
+        let lobe = if nl > 0.0 { self.lobe().brdf(l, v) * nl } else { 0.0 };
+        let below = self.below(l) * (1.0 - share.max_element());
+        (below + dielectric * lobe).lerp(metal * lobe, self.metallic)
     }
 
     /// What a dielectric does with the light that it does not reflect, times the cosine.
-    fn below(&self, l: DVec3, choices: Choices) -> DVec3 {
+    fn below(&self, l: DVec3) -> DVec3 {
         let (n, v) = (self.normal, self.view);
         let nl = n.dot(l);
         let before = self.base * (nl.max(0.0) / PI);
-        // KHR_materials_volume: Beer's law, where there is a thickness.
+        // KHR_materials_volume: T(x) of "Attenuation", along the thickness, where there is one, as in the
+        // glTF Sample Renderer (`diffuseTransmissionThickness`).
         let passing = match self.thickness > 0.0 && self.attenuation_distance.is_finite() {
             true => self.attenuation_color.powf(self.thickness / self.attenuation_distance),
             false => DVec3::ONE,
@@ -275,14 +283,14 @@ impl Surface {
         if self.transmission == 0.0 {
             return scattered;
         }
-        let through = if nl < 0.0 { self.btdf(l, v, choices) * -nl } else { 0.0 };
+        let through = if nl < 0.0 { self.btdf(l, v) * -nl } else { 0.0 };
         scattered.lerp(self.base * passing * through, self.transmission)
     }
 
     /// KHR_materials_transmission: `specular_btdf`.
-    fn btdf(&self, l: DVec3, v: DVec3, choices: Choices) -> f64 {
+    fn btdf(&self, l: DVec3, v: DVec3) -> f64 {
         let n = self.normal;
-        let alpha = self.alpha(choices);
+        let alpha = self.alpha();
         let a2 = alpha * alpha;
         let (nl, nv) = (n.dot(l), n.dot(v));
         let h = (v - n * (2.0 * nl) + l).normalize();

@@ -210,17 +210,31 @@ impl Model {
         self.add_lamp(far, json!({ "rotation": [-0.2, -0.5, 0.0, 0.842_614_977] }));
     }
 
-    /// Adds an image with a sampler. The result is the number of the texture.
-    pub fn add_texture(&mut self, pixels: Pixels, sampler: Value) -> usize {
+    /// Adds an image. The result is its number.
+    fn add_image(&mut self, pixels: Pixels, format: image::ImageFormat) -> usize {
         let texels = pixels.texels.concat();
         let image = image::RgbaImage::from_raw(pixels.width as u32, pixels.height as u32, texels);
         let mut file = std::io::Cursor::new(Vec::new());
-        image.expect("whole rows").write_to(&mut file, image::ImageFormat::Png).expect("a PNG");
+        image.expect("whole rows").write_to(&mut file, format).expect("an image");
         let view = self.add_view(&file.into_inner());
-        let image = self.push("images", json!({ "bufferView": view, "mimeType": "image/png" }));
         self.images.push(pixels);
+        self.push("images", json!({ "bufferView": view, "mimeType": format.to_mime_type() }))
+    }
+
+    /// Adds an image with a sampler. The result is the number of the texture.
+    pub fn add_texture(&mut self, pixels: Pixels, sampler: Value) -> usize {
+        let image = self.add_image(pixels, image::ImageFormat::Png);
         let sampler = self.push("samplers", sampler);
         self.push("textures", json!({ "source": image, "sampler": sampler }))
+    }
+
+    /// Adds a texture with two images: a lossless WebP, and another for readers without EXT_texture_webp.
+    pub fn add_webp_texture(&mut self, pixels: Pixels, other: Pixels) -> usize {
+        let [other, own] = [(other, image::ImageFormat::Png), (pixels, image::ImageFormat::WebP)]
+            .map(|(pixels, format)| self.add_image(pixels, format));
+        self.document["extensionsUsed"] = json!(["EXT_texture_webp"]);
+        let extensions = json!({ "EXT_texture_webp": { "source": own } });
+        self.push("textures", json!({ "source": other, "extensions": extensions }))
     }
 
     /// The binary file.

@@ -5,8 +5,9 @@
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, Vec3Swizzles as _};
 use serde_json::Value;
 
-use super::brdf::{Choices, Lobe, Surface};
-use super::model::{Drawn, Model, Pixels, local};
+use super::brdf::{Choices, Surface};
+use super::model::{Drawn, Mesh, Model, Pixels, local};
+use super::tangents::{Face, Vertex, tangents};
 
 /// A vertex in the world.
 #[derive(Debug, Clone, Copy)]
@@ -58,7 +59,8 @@ struct Hit {
 impl<'m> Scene<'m> {
     pub fn new(model: &'m Model, choices: Choices) -> Self {
         let document = &model.document;
-        let triangles = model.drawn.iter().flat_map(triangles).collect();
+        let of_mesh = |drawn| triangles(drawn, document, choices);
+        let triangles = model.drawn.iter().flat_map(of_mesh).collect();
         let (mut lamps, mut camera) = (Vec::new(), (Value::Null, DMat4::IDENTITY));
         for (world, node) in nodes(document) {
             if let Some(index) = index_at(node, "/extensions/KHR_lights_punctual/light") {
@@ -149,26 +151,22 @@ impl<'m> Scene<'m> {
         self.triangles.iter().enumerate().filter_map(hit).collect()
     }
 
-    /// B.1 and KHR_lights_punctual: what the surface gives off, and what it reflects of each lamp.
+    /// 3.9.3, appendix B and KHR_lights_punctual: what the surface gives off, and what it reflects of each lamp.
     fn radiance(&self, surface: &Surface, place: DVec3) -> DVec3 {
         if surface.is_unlit {
             return surface.base;
         }
         const STEPS: usize = 20;
-        let albedo = |lobe: Lobe, counts: bool| match counts && self.choices.multiple {
-            true => lobe.albedo(surface.view, STEPS),
+        let albedo = match self.choices.multiple {
+            true => surface.lobe().albedo(surface.view, STEPS),
             false => 1.0,
         };
-        let albedos = [
-            albedo(surface.lobe(self.choices), true),
-            albedo(surface.coat_lobe(self.choices), surface.clearcoat > 0.0),
-        ];
         let lit = self.lamps.iter().map(|lamp| {
             let (l, arriving) = lamp.arriving(place);
             if arriving == DVec3::ZERO {
                 return DVec3::ZERO;
             }
-            arriving * surface.reflected(l, self.choices, albedos)
+            arriving * surface.reflected(l, self.choices, albedo)
         });
         surface.emitted() + lit.sum::<DVec3>()
     }
@@ -223,26 +221,18 @@ impl Place<'_, '_> {
     /// The texel of a texture of the document; white where there is none (3.9.2).
     fn texel(&self, info: &Value, is_color: bool) -> DVec4 {
         let Some(index) = index_at(info, "/index") else { return DVec4::ONE };
-        let transform = &info["extensions"]["KHR_texture_transform"];
-        let set = index_at(transform, "/texCoord").or(index_at(info, "/texCoord")).unwrap_or(0);
-        let uv = self.mean(|corner| corner.uv[set]);
-        // KHR_texture_transform: translation * rotation * scale.
-        let pair = |name: &str, usual: f64| {
-            let list = transform[name].as_array();
-            list.map_or(DVec2::splat(usual), |list| {
-                DVec2::new(list[0].as_f64().unwrap_or(0.0), list[1].as_f64().unwrap_or(0.0))
-            })
-        };
-        let uv = uv * pair("scale", 1.0);
-        let (sine, cosine) = number(transform, "rotation", 0.0).sin_cos();
-        let turned = DVec2::new(cosine * uv.x + sine * uv.y, cosine * uv.y - sine * uv.x);
+        let uv = placed(info, [0, 1].map(|set| self.mean(|corner| corner.uv[set])), true);
         let texture = &self.scene.document["textures"][index];
-        let image = &self.scene.images[index_at(texture, "/source").expect("an image")];
+        // EXT_texture_webp: its image is taken where it can be read, `source` otherwise.
+        let source = index_at(texture, "/extensions/EXT_texture_webp/source");
+        let source = source.or(index_at(texture, "/source")).expect("an image");
+        let image = &self.scene.images[source];
         let sampler = index_at(texture, "/sampler").map(|at| &self.scene.document["samplers"][at]);
-        image.sample(turned + pair("offset", 0.0), sampler.unwrap_or(&Value::Null), is_color)
+        image.sample(uv, sampler.unwrap_or(&Value::Null), is_color)
     }
 
-    /// The normals and tangents. A back has them turned round (3.9.6), the tangent with its bitangent.
+    /// The normals and tangents. A back has them turned round (3.9.5), the tangent with its bitangent, as
+    /// in the glTF Sample Renderer (`getNormalInfo`).
     fn bare_surface(&self, material: &Value, view: DVec3) -> Surface {
         let side = if self.hit.is_front { 1.0 } else { -1.0 };
         let normal = self.mean(|corner| corner.normal).normalize();
@@ -451,72 +441,88 @@ impl Pixels {
     }
 }
 
-/// The triangles of a mesh in the world. Normals that are absent are those of the faces, and tangents those of
-/// the coordinates (3.7.2.1): along u, with a bitangent against v, which points down in the image.
-fn triangles(drawn: &Drawn) -> Vec<Triangle> {
-    let (mesh, world, linear) = (&drawn.mesh, drawn.world, DMat3::from_mat4(drawn.world));
-    let of_normals = linear.inverse().transpose();
-    let mirrored = linear.determinant() < 0.0;
-    let list = mesh.indices.clone().unwrap_or_else(|| (0..mesh.positions.len() as u32).collect());
-    let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
-    let corner = |index: &u32| {
-        let at = *index as usize;
-        let uv = |set: usize| {
-            let rows = mesh.uvs[set].as_ref();
-            rows.map_or(DVec2::ZERO, |rows| DVec2::from_array(rows[at].map(f64::from)))
-        };
-        let normal = mesh.normals.as_ref().map_or(DVec3::ZERO, |rows| vector(rows[at]));
-        let tangent = mesh
-            .tangents
-            .as_ref()
-            .map_or(DVec4::ZERO, |rows| DVec4::from_array(rows[at].map(f64::from)));
-        let color = mesh
-            .colors
-            .as_ref()
-            .map_or(DVec4::ONE, |rows| DVec4::from_array(rows[at].map(f64::from)));
-        Corner {
-            position: world.transform_point3(vector(mesh.positions[at])),
-            normal: (of_normals * normal).normalize_or_zero(),
-            tangent: (linear * tangent.truncate()).normalize_or_zero().extend(
-                // The bitangent is transformed with the mesh, so a mirror turns its sign.
-                if mirrored { -tangent.w } else { tangent.w },
-            ),
-            uv: [uv(0), uv(1)],
-            color,
-        }
+/// The coordinates of a texture, of the two sets of a mesh. KHR_texture_transform: translation * rotation *
+/// scale.
+fn placed(info: &Value, sets: [DVec2; 2], is_transformed: bool) -> DVec2 {
+    let transform = &info["extensions"]["KHR_texture_transform"];
+    let set = index_at(transform, "/texCoord").or(index_at(info, "/texCoord")).unwrap_or(0);
+    if !is_transformed {
+        return sets[set];
+    }
+    let pair = |name: &str, usual: f64| {
+        let list = transform[name].as_array();
+        list.map_or(DVec2::splat(usual), |list| {
+            DVec2::new(list[0].as_f64().unwrap_or(0.0), list[1].as_f64().unwrap_or(0.0))
+        })
     };
-    let triangle = |three: &[u32]| {
-        let mut corners = [corner(&three[0]), corner(&three[1]), corner(&three[2])];
+    let uv = sets[set] * pair("scale", 1.0);
+    let (sine, cosine) = number(transform, "rotation", 0.0).sin_cos();
+    let turned = DVec2::new(cosine * uv.x + sine * uv.y, cosine * uv.y - sine * uv.x);
+    turned + pair("offset", 0.0)
+}
+
+/// The triangles of a mesh in the world. Normals that are absent are those of the faces, and then tangents
+/// that are given count for nothing (3.7.2.1). Tangents that are absent are those of MikkTSpace, with the
+/// coordinates of the normal map.
+fn triangles(drawn: &Drawn, document: &Value, choices: Choices) -> Vec<Triangle> {
+    let (mesh, linear) = (&drawn.mesh, DMat3::from_mat4(drawn.world));
+    let of_normals = linear.inverse().transpose();
+    let is_mirrored = linear.determinant() < 0.0;
+    // The bitangent is transformed with the mesh, so a mirror turns its sign.
+    let sign = if is_mirrored { -1.0 } else { 1.0 };
+    let list = mesh.indices.clone().unwrap_or_else(|| (0..mesh.positions.len() as u32).collect());
+    let threes: Vec<[usize; 3]> =
+        list.chunks_exact(3).map(|three| [0, 1, 2].map(|at| three[at] as usize)).collect();
+    let map = &document["materials"][mesh.material]["normalTexture"];
+    let of_map = |at: usize| placed(map, sets(mesh, at), choices.transformed_tangents);
+    let faces: Vec<Face> = threes.iter().map(|three| face(mesh, *three, of_map)).collect();
+    let tangents = match mesh.tangents.as_ref().filter(|_| mesh.normals.is_some()) {
+        Some(rows) => threes.iter().map(|three| three.map(|at| wide4(rows[at]))).collect(),
+        None => tangents(&faces),
+    };
+    let triangle = |((face, tangents), three): ((&Face, [DVec4; 3]), &[usize; 3])| {
+        let mut corners = [0, 1, 2].map(|corner| Corner {
+            position: drawn.world.transform_point3(face[corner].position),
+            normal: (of_normals * face[corner].normal).normalize_or_zero(),
+            tangent: (linear * tangents[corner].truncate())
+                .normalize_or_zero()
+                .extend(sign * tangents[corner].w),
+            uv: sets(mesh, three[corner]),
+            color: mesh.colors.as_ref().map_or(DVec4::ONE, |rows| wide4(rows[three[corner]])),
+        });
         // 3.7.4: a mirror turns the winding.
-        if mirrored {
+        if is_mirrored {
             corners.swap(1, 2);
-        }
-        let [a, b, c] = corners;
-        let (ab, ac) = (b.position - a.position, c.position - a.position);
-        if mesh.normals.is_none() {
-            corners.iter_mut().for_each(|corner| corner.normal = ab.cross(ac).normalize());
-        }
-        if mesh.tangents.is_none() || mesh.normals.is_none() {
-            set_tangents(&mut corners);
         }
         Triangle { corners, material: mesh.material }
     };
-    list.chunks_exact(3).map(triangle).collect()
+    faces.iter().zip(tangents).zip(&threes).map(triangle).collect()
 }
 
-/// Tangents along u, whose bitangents are against v.
-fn set_tangents(corners: &mut [Corner; 3]) {
-    let [a, b, c] = *corners;
-    let (ab, ac) = (b.position - a.position, c.position - a.position);
-    let (s, t) = (b.uv[0] - a.uv[0], c.uv[0] - a.uv[0]);
-    let area = s.perp_dot(t);
-    let (along, down) = ((ab * t.y - ac * s.y) / area, (ac * s.x - ab * t.x) / area);
-    for corner in corners {
-        let n = corner.normal;
-        let flat = (along - n * n.dot(along)).normalize_or_zero();
-        let sign = if n.cross(flat).dot(down) > 0.0 { -1.0 } else { 1.0 };
-        corner.tangent = flat.extend(sign);
+fn wide4(row: [f32; 4]) -> DVec4 {
+    DVec4::from_array(row.map(f64::from))
+}
+
+/// Both sets of coordinates of a vertex.
+fn sets(mesh: &Mesh, at: usize) -> [DVec2; 2] {
+    let set = |rows: &Option<Vec<[f32; 2]>>| {
+        rows.as_ref().map_or(DVec2::ZERO, |rows| DVec2::from_array(rows[at].map(f64::from)))
+    };
+    [set(&mesh.uvs[0]), set(&mesh.uvs[1])]
+}
+
+/// A face in the space of its mesh, with the coordinates of its normal map.
+fn face(mesh: &Mesh, three: [usize; 3], uv: impl Fn(usize) -> DVec2) -> Face {
+    let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
+    let mut face = three.map(|at| {
+        let normal = mesh.normals.as_ref().map_or(DVec3::ZERO, |rows| vector(rows[at]).normalize());
+        Vertex { position: vector(mesh.positions[at]), normal, uv: uv(at) }
+    });
+    if mesh.normals.is_none() {
+        let [a, b, c] = face.map(|vertex| vertex.position);
+        face.iter_mut().for_each(|vertex| vertex.normal = (b - a).cross(c - a).normalize());
     }
+    face
 }
 
 /// All nodes of the scene with their places in the world.

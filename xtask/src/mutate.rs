@@ -3,7 +3,7 @@
 use xtask::{CommandResult, process};
 
 /// Runs `lamplight mutate` over the library's sources, in release: it makes thousands of mutants.
-/// Arguments (modules, `--coverage`) are passed on.
+/// Arguments (modules, `--coverage`, `--shared`) are passed on.
 pub fn run(arguments: &[String]) -> CommandResult {
     let command = ["run", "--quiet", "--release", "--package", "lamplight", "--", "mutate"];
     let all: Vec<&str> = command

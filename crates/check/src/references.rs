@@ -10,8 +10,32 @@ use lamplight_execute::fixture::{Fixture, FixtureSampler, FixtureTexture};
 pub struct ReferenceEntry {
     /// Module path below the package, `lighting::spot`.
     pub module: &'static str,
-    /// Function name and its reference.
-    pub functions: &'static [(&'static str, Reference)],
+    /// Function name, what its reference is written from, and the reference.
+    pub functions: &'static [(&'static str, Source, Reference)],
+}
+
+/// What a reference is written from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Source {
+    /// What the quantity is: an integral by quadrature, or a sum over all parts.
+    Integral,
+    /// A formula of a publication, in another form or order than the shader's.
+    Published,
+    /// The code or formula of a standard or of an extension.
+    Specification,
+    /// Terms of a sum without end, as many as count in f64.
+    Series,
+}
+
+impl Source {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Integral => "integral",
+            Self::Published => "published form",
+            Self::Specification => "specification",
+            Self::Series => "series",
+        }
+    }
 }
 
 /// A reference reads its arguments in the order of the parameters.
@@ -151,6 +175,16 @@ include!(concat!(env!("OUT_DIR"), "/references.rs"));
 
 /// The reference of a function by its path below the package.
 pub fn find_reference(module: &str, function: &str) -> Option<Reference> {
+    find(module, function).map(|(_, reference)| reference)
+}
+
+/// What the reference of a function is written from.
+pub fn find_source(module: &str, function: &str) -> Option<Source> {
+    find(module, function).map(|(source, _)| source)
+}
+
+fn find(module: &str, function: &str) -> Option<(Source, Reference)> {
     let entry = ALL.iter().find(|entry| entry.module == module)?;
-    entry.functions.iter().find(|(name, _)| *name == function).map(|(_, reference)| *reference)
+    let mut named = entry.functions.iter().filter(|(name, ..)| *name == function);
+    named.next().map(|(_, source, reference)| (*source, *reference))
 }

@@ -45,7 +45,7 @@ pub fn measure_coverage(
 ) -> Result<Vec<Coverage>, Diagnostics> {
     on_large_stack(|| {
         let files = suite::case_files(library, sources, modules)?;
-        let suites = suite::make_suites(library, sources, &files)?;
+        let suites = suite::make_suites(library, sources, &files, false)?;
         let texts = sources.lock().map(|sources| sources.clone()).unwrap_or_default();
         Ok(suites.iter().map(|suite| suite_coverage(suite, &texts)).collect())
     })

@@ -11,12 +11,17 @@
 //! another reason, are listed in `survivors.toml` at the package's root.
 
 mod coverage;
+mod limit;
 mod report;
+mod shared;
 mod site;
 mod suite;
 
 pub use coverage::{Coverage, UncoveredBlock, measure_coverage};
 pub use report::{Fate, MutantOutcome, MutantReport};
+pub use shared::{
+    HEAD as SHARED_HEAD, Kind, SharedFate, SharedOutcome, SharedReport, run_shared_mutants,
+};
 
 use std::sync::Mutex;
 
@@ -42,7 +47,7 @@ pub fn run_mutants(
     let listed = report::read_list(library)?;
     on_large_stack(|| {
         let files = suite::case_files(library, sources, modules)?;
-        let suites = suite::make_suites(library, sources, &files)?;
+        let suites = suite::make_suites(library, sources, &files, false)?;
         suites
             .par_iter()
             .map(Suite::check)

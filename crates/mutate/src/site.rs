@@ -4,6 +4,7 @@
 //! swapped. [`apply_mutation`] puts a mistake into a function, and [`QuotedSource`] describes it in
 //! the author's terms, with its place.
 
+use crate::limit::Limit;
 use lamplight_compose::SourceMap;
 use lamplight_diagnostic::source;
 use lamplight_diagnostic::source::SourceSet;
@@ -40,6 +41,8 @@ pub enum Mutation {
     Argument { statement: usize, result: Handle<Expression>, argument: Handle<Expression> },
     /// Two arguments of a call change places.
     Exchanged { statement: usize, first: usize, arguments: [Handle<Expression>; 2] },
+    /// All results of the function have a bound.
+    Limited(Limit),
 }
 
 /// How an expression was changed, for a description.
@@ -457,6 +460,7 @@ pub fn apply_mutation(
         Mutation::NoStore { statement } => {
             change_statement(&mut function.body, *statement, &mut remove_statement)
         }
+        Mutation::Limited(limit) => limit.apply(function),
         Mutation::Argument { statement, result, argument } => {
             let Some(with) = inner(*argument).and_then(|inner| equal_value(&inner, *argument))
             else {
@@ -560,6 +564,7 @@ impl QuotedSource<'_> {
                 self.exchange(*one, *other, &whole)
             }
             Mutation::NoStore { .. } => format!("no assignment `{whole}`"),
+            Mutation::Limited(limit) => limit.describe(),
             Mutation::Argument { argument, .. } => {
                 format!("`{}` instead of `{whole}`", self.operand(*argument))
             }

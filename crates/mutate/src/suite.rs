@@ -58,13 +58,13 @@ pub struct Subject {
 pub struct ReadyCase<'f> {
     pub job: CaseJob<'f>,
     order: Vec<usize>,
-    batches: Vec<RowBatch>,
+    pub batches: Vec<RowBatch>,
 }
 
 /// Rows with their expected values.
-struct RowBatch {
-    rows: Rows,
-    expected: Vec<Goal>,
+pub struct RowBatch {
+    pub rows: Rows,
+    pub expected: Vec<Goal>,
     /// The allowed error of each word in f64: twice the error of the code without a mistake, which
     /// comes from its constants in f32, and the parts `RELATIVE` and `OF_STATED`. It is infinite
     /// where the oracle is the code itself or accepts every value, or the code without a mistake is
@@ -92,23 +92,25 @@ pub fn case_files(
     modules.iter().map(read).collect()
 }
 
-/// Composes the modules and prepares their cases.
+/// Composes the modules and prepares their cases. With `partners`, laws about several functions are
+/// among these.
 pub fn make_suites<'f>(
     library: &Library,
     sources: &Mutex<SourceSet>,
     files: &'f [NamedCases],
+    partners: bool,
 ) -> Result<Vec<Suite<'f>>, Diagnostics> {
     files
         .par_iter()
-        .map(|(module, file)| make_suite(library, sources, module, file.as_ref()))
+        .map(|(module, file)| make_suite((library, sources), module, file.as_ref(), partners))
         .collect()
 }
 
 fn make_suite<'f>(
-    library: &Library,
-    sources: &Mutex<SourceSet>,
+    (library, sources): (&Library, &Mutex<SourceSet>),
     module: &str,
     file: Option<&'f CaseFile>,
+    partners: bool,
 ) -> Result<Suite<'f>, Diagnostics> {
     let (composed, validated) = library.whole(sources, module)?;
     let mut whole = validated.module;
@@ -121,10 +123,13 @@ fn make_suite<'f>(
             module,
             file,
             &[Language::Wesl],
-            &|_, _, _| Ok(CheckedModule::without_text(parsed.clone())),
-            // A mutant changes one module, and its results are compared with the case's oracle, so
-            // laws about several functions are left out.
-            &CheckOptions { partners: false, ..CheckOptions::default() },
+            &|other, language, functions| match other == module {
+                true => Ok(CheckedModule::without_text(parsed.clone())),
+                false => library.checked_module(sources, other, language, functions),
+            },
+            // Where the results of a mutant are compared with the case's oracle, laws about several
+            // functions are left out.
+            &CheckOptions { partners, ..CheckOptions::default() },
         )?,
         None => Vec::new(),
     };
@@ -204,7 +209,7 @@ fn row_slack(
 }
 
 /// The result of one row in f64.
-fn exact_result(
+pub fn exact_result(
     calls: &mut KernelCalls<'_, f64>,
     row: &[u32],
     kinds: &[ScalarKind],
@@ -261,20 +266,32 @@ impl Suite<'_> {
         fate
     }
 
-    fn run(&self, case: &ReadyCase<'_>, subject: &Subject, site: &Site) -> Option<Fate> {
-        let mut module = case.job.kernel().module.clone();
+    /// Whether the mutant can be run.
+    pub fn is_valid(&self, subject: &Subject, site: &Site) -> bool {
+        let mutants =
+            self.cases.iter().filter_map(|case| self.mutant(case.job.kernel(), subject, site));
+        mutants.take(1).all(|module| module_info(&self.module, &module).is_ok())
+    }
+
+    /// The module of a kernel with the mistake; `None` if it has no place for it.
+    fn mutant(&self, kernel: &Kernel, subject: &Subject, site: &Site) -> Option<Module> {
+        let mut module = kernel.module.clone();
         let ty = |handle: Handle<Expression>| {
             Some(self.info[subject.function][handle].ty.inner_with(&self.whole.types).clone())
         };
         let function = find_function(&module, &subject.name)?;
-        apply_mutation(module.functions.get_mut(function), site, ty).then_some(())?;
+        apply_mutation(module.functions.get_mut(function), site, ty).then_some(module)
+    }
+
+    fn run(&self, case: &ReadyCase<'_>, subject: &Subject, site: &Site) -> Option<Fate> {
+        let module = self.mutant(case.job.kernel(), subject, site)?;
         let interpreter = case.interpreter(&module).ok()?;
         // A mutant that takes too many steps is an error, and is noticed too.
         Some(if case.notices(&interpreter).unwrap_or(true) { Fate::Killed } else { Fate::Survived })
     }
 }
 
-fn find_function(module: &Module, name: &str) -> Option<Handle<Function>> {
+pub fn find_function(module: &Module, name: &str) -> Option<Handle<Function>> {
     module
         .functions
         .iter()
@@ -286,7 +303,7 @@ impl ReadyCase<'_> {
     /// An interpreter for the kernel's module, or for a changed copy of it. All rows run twice, in
     /// f64 and in f32, and once more for each law with rows of its own. Each time may take the
     /// steps of a case.
-    fn interpreter(&self, module: &Module) -> Result<Interpreter, Diagnostic> {
+    pub fn interpreter(&self, module: &Module) -> Result<Interpreter, Diagnostic> {
         let with_rows = self.job.laws.iter().filter(|law| law.rows.is_some()).count();
         let times = 2 + with_rows as u64;
         Ok(Interpreter::of(self.job.kernel(), module)?.with_steps_times(times))
@@ -299,7 +316,7 @@ impl ReadyCase<'_> {
     }
 
     /// Whether a value in f64 differs from the oracle in any of the digits that are compared.
-    fn is_off(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
+    pub fn is_off(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
         let kinds = self.job.kernel().result_kinds();
         let mut calls = interpreter.calls::<f64>()?;
         calls.machine.loop_limit = TRIPS;
@@ -369,7 +386,7 @@ impl ReadyCase<'_> {
 }
 
 /// Runs rows of a kernel in f32.
-struct RowRunner<'p> {
+pub struct RowRunner<'p> {
     pub calls: KernelCalls<'p, f32>,
     kinds: Vec<ScalarKind>,
     stride: usize,

@@ -9,6 +9,7 @@
 )]
 
 mod mutate;
+mod shared;
 
 use lamplight_diagnostic::source::Embedded;
 
@@ -17,5 +18,5 @@ const LIBRARY_FILES: Embedded =
     Embedded { texts: lamplight_shaderlib::FILES, tables: lamplight_shaderlib::TABLES };
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[mutate::tests])
+    lamplight_testing::run_tests(&[mutate::tests, shared::tests])
 }

@@ -8,7 +8,12 @@ use crate::gltf::model::{Mesh, Model};
 fn rows_first() -> Vec<Row> {
     vec![
         row("base_color_factor", "3.9.2", "multiplied with texture and vertex colour", || {
-            Model::of(bulging(), plain(json!({})))
+            let colors = vec![[1.0, 0.6, 0.9, 1.0], [0.7, 1.0, 0.8, 1.0], [0.6, 0.9, 1.0, 1.0]];
+            textured(Mesh { colors: Some(colors), ..bulging() }, |index| {
+                let mut material = plain(json!({}));
+                material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": index });
+                material
+            })
         }),
         row("base_color_texture", "3.9.2", "decoded from sRGB before it is filtered", || {
             textured(bulging(), |index| {
@@ -72,11 +77,21 @@ fn rows_second() -> Vec<Row> {
             material["emissiveFactor"] = json!([0.2, 0.1, 0.4]);
             Model::of(bulging(), material)
         }),
-        row("alpha_mask", "3.9.4", "points below the cutoff are left out", masked),
+        row("alpha_mask", "3.9.4", "points below the cutoff are left out", || masked(0.4, 90)),
+        row("alpha_mask_zero", "3.9.4", "no point is below a cutoff of 0", || masked(0.0, 0)),
         row("alpha_opaque", "3.9.4", "alpha counts for nothing", || {
             let mut material = plain(json!({ "alphaMode": "OPAQUE" }));
             material["pbrMetallicRoughness"]["baseColorFactor"] = json!([0.8, 0.5, 0.3, 0.2]);
             Model::of(bulging(), material)
+        }),
+        row("alpha_opaque_beside_mask", "3.9.4", "vertex alpha counts for nothing too", || {
+            let mut model = masked(0.4, 90);
+            let material = model.add_material(plain(json!({})));
+            let colors = Some(vec![[1.0, 1.0, 1.0, 0.1]; 3]);
+            // Behind the other one, so that the mask has the only edge.
+            let behind = json!({ "translation": [0.0, 0.0, -0.3], "scale": [1.2, 1.2, 1.2] });
+            model.add(Mesh { material, colors, ..bulging() }, behind);
+            model
         }),
         row("alpha_blend", "3.9.4", "over what is behind, sorted at each pixel", blended),
     ]
@@ -94,10 +109,10 @@ fn rows_third() -> Vec<Row> {
             model.add(part, json!({ "translation": [0.0, 0.0, 0.1] }));
             model
         }),
-        row("double_sided", "3.9.6", "backs have the opposite normal", || {
+        row("double_sided", "3.9.5", "backs have the opposite normal", || {
             Model::of(bulging().turned(), plain(json!({ "doubleSided": true })))
         }),
-        row("single_sided", "3.9.6", "backs are not drawn", || {
+        row("single_sided", "3.9.5", "backs are not drawn", || {
             let mut model = Model::of(bulging(), plain(json!({})));
             let mut back = bulging().turned();
             back.material = model.add_material(plain(json!({})));
@@ -158,14 +173,14 @@ fn blended() -> Model {
     model
 }
 
-/// A pattern whose alpha is below and above the cutoff by quarters, in squares.
-fn masked() -> Model {
+/// A pattern whose alpha is low in half of its columns and high in the others.
+fn masked(cutoff: f64, low: u8) -> Model {
     let mut pixels = super::pattern();
     for (index, texel) in pixels.texels.iter_mut().enumerate() {
-        texel[3] = if index % 4 < 2 { 90 } else { 200 };
+        texel[3] = if index % 4 < 2 { low } else { 200 };
     }
-    super::textured_by(bulging(), pixels, json!({ "magFilter": 9728 }), |index| {
-        let mut material = plain(json!({ "alphaMode": "MASK", "alphaCutoff": 0.4 }));
+    super::textured_by(bulging(), pixels, json!({ "magFilter": 9728 }), move |index| {
+        let mut material = plain(json!({ "alphaMode": "MASK", "alphaCutoff": cutoff }));
         material["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": index });
         material["pbrMetallicRoughness"]["baseColorFactor"] = json!([1.0, 1.0, 1.0, 0.8]);
         material

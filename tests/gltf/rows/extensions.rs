@@ -2,12 +2,13 @@
 
 use serde_json::{Value, json};
 
-use super::{Choices, LIBRARY, Row, bulging, extended, metal, row, textured};
+use super::{Choices, Row, SUGGESTED, bulging, extended, metal, row, textured};
 use crate::gltf::model::{Mesh, Model};
 
-/// The film as the library and the glTF Sample Renderer have it.
-const OF_VIEWER: Choices = Choices { film_of_viewer: true, ..LIBRARY };
-const SIMPLE_SHEEN: Choices = Choices { simple_sheen: true, ..LIBRARY };
+/// The film as the glTF Sample Renderer has it.
+const OF_VIEWER: Choices = Choices { film_of_viewer: true, ..SUGGESTED };
+const MIRRORED: Choices = Choices { mirrored_fresnel: true, ..SUGGESTED };
+const SIMPLE_SHEEN: Choices = Choices { simple_sheen: true, ..SUGGESTED };
 
 fn of(name: &str, own: Value) -> Model {
     Model::of(bulging(), extended(name, own))
@@ -106,12 +107,30 @@ fn layered_second() -> Vec<Row> {
             let own = json!({ "anisotropyStrength": 0.6, "anisotropyRotation": 0.7 });
             Model::of(Mesh::bulging(0.1).with_tangents(), extended(BRUSH, own))
         }),
+        row("anisotropy_grazing", BRUSH, "a lamp near the plane of the surface", || {
+            let mut material = extended(BRUSH, json!({ "anisotropyStrength": 0.6 }));
+            material["pbrMetallicRoughness"]["baseColorFactor"] = json!([0.0, 0.0, 0.0, 1.0]);
+            let mut model = Model::new();
+            model.add_material(material);
+            model.add(Mesh::bulging(0.0).with_tangents(), json!({}));
+            let turn = glam::DQuat::from_rotation_x(-1.47).to_array();
+            let lamp = json!({ "type": "directional", "intensity": 20000.0 });
+            model.add_lamp(lamp, json!({ "rotation": turn }));
+            model
+        })
+        .differs("the visibility is not limited to 1, as in the appendix"),
         row("iridescence", FILM, "by the angle of the viewer, as the glTF Sample Renderer", || {
-            film(1.0)
+            film(0.0)
         })
         .with(OF_VIEWER),
-        row("iridescence_half", FILM, "by the angle of the half vector, as printed", || film(1.0))
+        row("iridescence_half", FILM, "by the angle of the half vector, as printed", || film(0.0))
             .differs("the film has the colours of the viewer's angle, for all lamps at once"),
+        row("iridescence_metal", FILM, "on a metal, by the angle of the viewer", || film(1.0))
+            .with(OF_VIEWER)
+            .differs("light that facets reflect several times is added to the film too"),
+        row("iridescence_mixed", FILM, "on a mix of a dielectric and a metal", || film(0.5))
+            .with(OF_VIEWER)
+            .differs("one film over the mix of both, in place of the mix of two films"),
         row("iridescence_textures", FILM, "factor in red, thickness in green", || {
             mapped(
                 FILM,
@@ -128,12 +147,14 @@ fn layered() -> Vec<Row> {
     [layered_first(), layered_second()].concat()
 }
 
-fn film(factor: f64) -> Model {
-    of(
+fn film(metallic: f64) -> Model {
+    let mut material = extended(
         "KHR_materials_iridescence",
-        json!({ "iridescenceFactor": factor, "iridescenceIor": 1.8,
+        json!({ "iridescenceFactor": 1.0, "iridescenceIor": 1.8,
         "iridescenceThicknessMaximum": 420.0 }),
-    )
+    );
+    material["pbrMetallicRoughness"]["metallicFactor"] = json!(metallic);
+    Model::of(bulging(), material)
 }
 
 /// A lamp behind the surface beside the usual ones.
@@ -143,13 +164,13 @@ fn lit_from_behind(mut model: Model) -> Model {
     model
 }
 
+const GLASS: &str = "KHR_materials_transmission";
+const LEAF: &str = "KHR_materials_diffuse_transmission";
+const MIRROR: &str = "the Fresnel term is that of the lamp's mirror image before the surface";
+
 fn passing() -> Vec<Row> {
-    const GLASS: &str = "KHR_materials_transmission";
-    const LEAF: &str = "KHR_materials_diffuse_transmission";
-    vec![
-        row("transmission", GLASS, "lamps behind a thin rough sheet", || {
-            lit_from_behind(of(GLASS, json!({ "transmissionFactor": 0.7 })))
-        }),
+    let mirrored = [
+        row("transmission", GLASS, "lamps behind a thin rough sheet", glass),
         row("transmission_texture", GLASS, "factor in red", || {
             lit_from_behind(mapped(
                 GLASS,
@@ -157,13 +178,7 @@ fn passing() -> Vec<Row> {
                 &["transmissionTexture"],
             ))
         }),
-        row("diffuse_transmission", LEAF, "light from behind is scattered", || {
-            lit_from_behind(of(
-                LEAF,
-                json!({ "diffuseTransmissionFactor": 0.6,
-                "diffuseTransmissionColorFactor": [0.3, 0.9, 0.2] }),
-            ))
-        }),
+        row("diffuse_transmission", LEAF, "light from behind is scattered", leaf),
         row("diffuse_transmission_textures", LEAF, "colour in sRGB, factor in alpha", || {
             lit_from_behind(mapped(
                 LEAF,
@@ -182,5 +197,23 @@ fn passing() -> Vec<Row> {
                 lit_from_behind(Model::of(bulging(), material))
             },
         ),
-    ]
+    ];
+    let printed = [
+        row("transmission_half", GLASS, "by the half vector of the lamp, as printed", glass),
+        row("diffuse_transmission_half", LEAF, "by the half vector of the lamp, as printed", leaf),
+    ];
+    let mirrored = mirrored.map(|row| row.with(MIRRORED));
+    mirrored.into_iter().chain(printed.map(|row| row.differs(MIRROR))).collect()
+}
+
+fn glass() -> Model {
+    lit_from_behind(of(GLASS, json!({ "transmissionFactor": 0.7 })))
+}
+
+fn leaf() -> Model {
+    lit_from_behind(of(
+        LEAF,
+        json!({ "diffuseTransmissionFactor": 0.6,
+            "diffuseTransmissionColorFactor": [0.3, 0.9, 0.2] }),
+    ))
 }

@@ -40,14 +40,26 @@ fn rows_first() -> Vec<Row> {
         row("strip", "3.7.2.1", "triangle strips", strip),
         row("quantized", "KHR_mesh_quantization", "small integers, normalised or not", quantized),
         row("sparse", "3.6.2.3", "some rows of an accessor are replaced", sparse),
-        row("morph_targets", "3.7.2.2", "by the weights of the mesh or the node", morphed),
-        row("skin", "3.7.3", "by the joints at rest", skinned),
-        row("instances", "EXT_mesh_gpu_instancing", "at each place of the attributes", instanced),
+        row("morph_targets", "3.7.2.2", "by the weights of the node, where it has some", || {
+            let mut model = morphed();
+            model.document["meshes"][0]["weights"] = json!([9.0, 9.0]);
+            let nodes = model.document["nodes"].as_array_mut().expect("nodes");
+            let node = nodes.iter_mut().find(|node| !node["mesh"].is_null()).expect("a node");
+            node["weights"] = json!(WEIGHTS);
+            model
+        }),
+        row("morph_weights", "3.7.2.2", "by those of the mesh otherwise", || {
+            let mut model = morphed();
+            model.document["meshes"][0]["weights"] = json!(WEIGHTS);
+            model
+        }),
     ]
 }
 
 fn rows_second() -> Vec<Row> {
     vec![
+        row("skin", "3.7.3", "by the joints at rest", skinned),
+        row("instances", "EXT_mesh_gpu_instancing", "at each place of the attributes", instanced),
         row("invisible", "KHR_node_visibility", "hidden nodes are not drawn", || {
             let mut model = Model::of(bulging(), plain(json!({})));
             let mesh = model.add_mesh(&bulging());
@@ -55,7 +67,7 @@ fn rows_second() -> Vec<Row> {
                 "extensions": { "KHR_node_visibility": { "visible": false } } }));
             model
         }),
-        row("default_material", "3.9.7", "a white metal of roughness 1", || {
+        row("default_material", "3.9.6", "a white metal of roughness 1", || {
             let mut model = Model::of(bulging(), json!({}));
             let primitive = &mut model.document["meshes"][0]["primitives"][0];
             primitive.as_object_mut().expect("a primitive").remove("material");
@@ -187,6 +199,9 @@ fn sparse() -> Model {
     model
 }
 
+const WEIGHTS: [f32; 2] = [0.25, 0.5];
+
+/// What is drawn is moved by `WEIGHTS`. The second target moves positions, both turn normals.
 fn morphed() -> Model {
     let mut model = Model::of(wide(), plain(json!({})));
     let moves = [[0.1, 0.0, 0.2], [0.0, 0.3, -0.3], [0.2, 0.0, 0.4]];
@@ -194,16 +209,12 @@ fn morphed() -> Model {
     let [first, second] = [model.add_floats(&moves), model.add_floats(&turns)];
     let primitive = &mut model.document["meshes"][0]["primitives"][0];
     primitive["targets"] = json!([{ "NORMAL": second }, { "POSITION": first, "NORMAL": second }]);
-    model.document["meshes"][0]["weights"] = json!([9.0, 9.0]);
-    let node = model.document["nodes"].as_array_mut().expect("nodes");
-    let node = node.iter_mut().find(|node| !node["mesh"].is_null()).expect("a node");
-    node["weights"] = json!([0.25, 0.5]);
     let mesh = &mut model.drawn[0].mesh;
     for (position, moved) in mesh.positions.iter_mut().zip(moves) {
-        (0..3).for_each(|part| position[part] += 0.5 * moved[part]);
+        (0..3).for_each(|part| position[part] += WEIGHTS[1] * moved[part]);
     }
     for (normal, moved) in mesh.normals.iter_mut().flatten().zip(turns) {
-        (0..3).for_each(|part| normal[part] += 0.75 * moved[part]);
+        (0..3).for_each(|part| normal[part] += (WEIGHTS[0] + WEIGHTS[1]) * moved[part]);
         *normal = glam::Vec3::from_array(*normal).normalize().to_array();
     }
     model

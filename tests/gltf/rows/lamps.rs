@@ -87,7 +87,7 @@ fn rows_second() -> Vec<Row> {
                 "rotation": turned(0.1, -0.1), "scale": [1.0, 1.0, 1.2] }));
             model
         }),
-        row("camera_perspective", "3.10", "`yfov`, with the node's place", || {
+        row("camera_perspective", "3.10.3.3", "`yfov`, with the node's place", || {
             let mut model = Model::of(bulging(), plain(json!({})));
             model.document["nodes"][0] = json!({ "camera": 0,
                 "translation": [0.5, 0.6, 2.6], "rotation": turned(-0.25, 0.2) });
@@ -98,12 +98,24 @@ fn rows_second() -> Vec<Row> {
 }
 
 fn rows_third() -> Vec<Row> {
-    vec![row("camera_orthographic", "3.10", "as a camera far away with a narrow angle", || {
-        let mut model = Model::of(bulging(), plain(json!({})));
-        model.document["cameras"][0] = json!({ "type": "orthographic",
-                "orthographic": { "xmag": 0.8, "ymag": 0.8, "znear": 0.1, "zfar": 50.0 } });
-        model
-    })]
+    const TEXT: &str = "3.10.3.4";
+    vec![
+        row("camera_orthographic", TEXT, "as a camera far away with a narrow angle", || {
+            parallel(3.0)
+        }),
+        row("camera_orthographic_far", TEXT, "the distance of the camera changes nothing", || {
+            parallel(200.0)
+        }),
+    ]
+}
+
+/// Seen by parallel rays from a distance.
+fn parallel(distance: f64) -> Model {
+    let mut model = Model::of(bulging(), plain(json!({})));
+    model.document["nodes"][0]["translation"] = json!([0.0, 0.0, distance]);
+    model.document["cameras"][0] = json!({ "type": "orthographic",
+        "orthographic": { "xmag": 0.8, "ymag": 0.8, "znear": 0.1, "zfar": 500.0 } });
+    model
 }
 
 pub fn rows() -> Vec<Row> {

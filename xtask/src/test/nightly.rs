@@ -7,11 +7,12 @@ use crate::{ci, faults, frames, mutate, random};
 /// A part: what it does, and the command that does it.
 type NightlyPart = (&'static str, fn() -> CommandResult);
 
-const PARTS: [NightlyPart; 6] = [
+const PARTS: [NightlyPart; 7] = [
     ("every test, whole", every_test),
     ("frames from the bytes of every target", || frames::run(&[])),
     ("20,000 random programs", || random::run(&words("--programs 20000"))),
     ("mutants of the whole library", || mutate::run(&[])),
+    ("mutants that references share", || mutate::run(&words("--shared"))),
     ("faults of the system", || faults::run(&[])),
     ("packages as they are published", ci::check_publishing),
 ];

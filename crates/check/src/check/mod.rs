@@ -4,7 +4,7 @@ mod facts;
 mod failures;
 pub mod job;
 pub mod law;
-mod partner;
+pub mod partner;
 mod profile;
 mod proof;
 mod report;

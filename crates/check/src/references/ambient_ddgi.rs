@@ -1,14 +1,15 @@
 //! Sources: Majercik et al., 2019, section 5.2; NVIDIA, RTXGI SDK 1.3, 2022.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::ddgi",
     functions: &[
-        ("ddgi_chebyshev", |a| chebyshev(a, None).into()),
-        ("ddgi_weight", |a| weight(a, Some(0.0))),
-        ("ddgi_weight_rtxgi", |a| weight(a, Some(0.05))),
-        ("ddgi_crushed", |a| weight(a, None)),
+        ("ddgi_chebyshev", Published, |a| chebyshev(a, None).into()),
+        ("ddgi_weight", Published, |a| weight(a, Some(0.0))),
+        ("ddgi_weight_rtxgi", Published, |a| weight(a, Some(0.05))),
+        ("ddgi_crushed", Published, |a| weight(a, None)),
     ],
 };
 

@@ -1,15 +1,16 @@
 //! Source: OpenGL Programming Guide, "Hemisphere Lighting" and example 7.12.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::hemisphere",
     functions: &[
-        ("hemisphere_weight", |a| weight(a.vec3(), a.vec3()).into()),
-        ("hemisphere_weight_sine", weight_sine),
-        ("hemisphere", |a| hemisphere(a.vec3(), a.vec3(), a.vec3(), a.vec3()).into()),
-        ("hemisphere_oglpg", hemisphere_oglpg),
+        ("hemisphere_weight", Published, |a| weight(a.vec3(), a.vec3()).into()),
+        ("hemisphere_weight_sine", Published, weight_sine),
+        ("hemisphere", Published, |a| hemisphere(a.vec3(), a.vec3(), a.vec3(), a.vec3()).into()),
+        ("hemisphere_oglpg", Published, hemisphere_oglpg),
     ],
 };
 

@@ -1,18 +1,19 @@
 //! Sources: OpenGL Programming Guide, example 7.13; Karis, "Real Shading in Unreal Engine 4", 2013;
 //! Lagarde and Zanuttini, 2012.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::ibl",
     functions: &[
-        ("ibl_mix", ibl_mix),
-        ("reflect_world", reflect_world),
-        ("split_sum", split_sum),
-        ("box_project", box_project),
-        ("prefilter_lod_filament", |a| lod_filament(a.f64(), a.f64()).into()),
-        ("prefilter_lod", |a| (a.f64().clamp(0.0, 1.0) * (a.f64() - 1.0).max(0.0)).into()),
+        ("ibl_mix", Published, ibl_mix),
+        ("reflect_world", Published, reflect_world),
+        ("split_sum", Published, split_sum),
+        ("box_project", Published, box_project),
+        ("prefilter_lod_filament", Published, |a| lod_filament(a.f64(), a.f64()).into()),
+        ("prefilter_lod", Published, |a| (a.f64().clamp(0.0, 1.0) * (a.f64() - 1.0).max(0.0)).into()),
     ],
 };
 

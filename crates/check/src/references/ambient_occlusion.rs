@@ -1,6 +1,7 @@
 //! Sources: Lagarde and de Rousiers, 2014, section 4.10.2; Jimenez et al., 2016, equations 7 and
 //! 10; Russell, 2015; Roberts, 2018; Chapman, 2013.
 
+use super::Source::{Integral, Published};
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -8,12 +9,12 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::occlusion",
     functions: &[
-        ("specular_occlusion", specular),
-        ("multibounce", multibounce),
-        ("horizon_occlusion", horizon),
-        ("gtao_arc", gtao_arc),
-        ("gtso", gtso),
-        ("ssao_kernel", |a| kernel(a.f64(), a.f64()).into()),
+        ("specular_occlusion", Published, specular),
+        ("multibounce", Published, multibounce),
+        ("horizon_occlusion", Published, horizon),
+        ("gtao_arc", Integral, gtao_arc),
+        ("gtso", Published, gtso),
+        ("ssao_kernel", Published, |a| kernel(a.f64(), a.f64()).into()),
     ],
 };
 

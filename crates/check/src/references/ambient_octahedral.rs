@@ -1,11 +1,12 @@
 //! Source: Cigolle et al., 2014, section 3.1.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec3};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::octahedral",
-    functions: &[("octahedral_encode", encode), ("octahedral_decode", |a| decode(a.vec2()).into())],
+    functions: &[("octahedral_encode", Published, encode), ("octahedral_decode", Published, |a| decode(a.vec2()).into())],
 };
 
 fn sign(x: f64) -> f64 {

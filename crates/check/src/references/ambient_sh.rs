@@ -2,6 +2,7 @@
 //! Maps", 2001, equations 3 and 13; OpenGL Programming Guide, equation 7.1; Hazel,
 //! 2015; Roughton et al., 2024; Sloan, 2008.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -9,14 +10,14 @@ use std::f64::consts::PI;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::sh",
     functions: &[
-        ("sh9_irradiance", |a| irradiance(a, 9).into()),
-        ("sh9_irradiance_clamped", |a| irradiance(a, 9).max(DVec3::ZERO).into()),
-        ("sh4_irradiance", |a| irradiance(a, 4).into()),
-        ("sh9_basis", |a| Expected::words(basis(a.vec3()))),
-        ("sh4_irradiance_geomerics", geomerics),
-        ("geomerics_channel", |a| lobe(a.vec3(), a.f64(), a.vec3()).into()),
-        ("sh4_irradiance_zh3", zh3),
-        ("sh_window", |a| window(a.f64(), a.f64()).into()),
+        ("sh9_irradiance", Published, |a| irradiance(a, 9).into()),
+        ("sh9_irradiance_clamped", Published, |a| irradiance(a, 9).max(DVec3::ZERO).into()),
+        ("sh4_irradiance", Published, |a| irradiance(a, 4).into()),
+        ("sh9_basis", Published, |a| Expected::words(basis(a.vec3()))),
+        ("sh4_irradiance_geomerics", Published, geomerics),
+        ("geomerics_channel", Published, |a| lobe(a.vec3(), a.f64(), a.vec3()).into()),
+        ("sh4_irradiance_zh3", Published, zh3),
+        ("sh_window", Published, |a| window(a.f64(), a.f64()).into()),
     ],
 };
 

@@ -1,13 +1,14 @@
 //! Sources: Khronos Group, KHR_materials_clearcoat, 2020; Fresnel's equation at normal incidence;
 //! Academy Software Foundation, OpenPBR Surface 1.1, 2024.
 
+use super::Source::{Published, Specification};
 use super::brdf_fresnel::average;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::coat",
-    functions: &[("coat_mix", coat_mix), ("coat_f0", coat_f0), ("coat_darkening", coat_darkening)],
+    functions: &[("coat_mix", Specification, coat_mix), ("coat_f0", Published, coat_f0), ("coat_darkening", Specification, coat_darkening)],
 };
 
 fn coat_mix(a: &mut CallArguments<'_>) -> Expected {

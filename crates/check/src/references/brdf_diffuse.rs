@@ -3,6 +3,7 @@
 //! and Hill, 2025 (EON); Hill's fit in MaterialX, 2021; Khronos Group,
 //! KHR_materials_diffuse_transmission, 2024; McAuley, 2011 (energy of a wrap).
 
+use super::Source::{Published, Specification};
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
@@ -10,17 +11,17 @@ use std::f64::consts::{FRAC_1_PI, PI};
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::diffuse",
     functions: &[
-        ("lambert", |a| lambert(a.vec3(), a.vec3()).into()),
-        ("half_lambert", |a| (0.5 * a.vec3().dot(a.vec3()) + 0.5).powi(2).into()),
-        ("wrap", wrap),
-        ("oren_nayar", oren_nayar),
-        ("burley", burley),
-        ("eon_g", |a| (eon_g(a.f64()) / PI).into()),
-        ("eon_albedo", |a| eon_albedo(a.f64(), a.f64()).min(1.0).into()),
-        ("eon", eon),
-        ("burley_albedo", burley_albedo),
-        ("diffuse_transmission", diffuse_transmission),
-        ("fd_wrap", |a| fd_wrap(a.f64(), a.f64().max(0.0)).into()),
+        ("lambert", Published, |a| lambert(a.vec3(), a.vec3()).into()),
+        ("half_lambert", Published, |a| (0.5 * a.vec3().dot(a.vec3()) + 0.5).powi(2).into()),
+        ("wrap", Published, wrap),
+        ("oren_nayar", Published, oren_nayar),
+        ("burley", Published, burley),
+        ("eon_g", Published, |a| (eon_g(a.f64()) / PI).into()),
+        ("eon_albedo", Published, |a| eon_albedo(a.f64(), a.f64()).min(1.0).into()),
+        ("eon", Published, eon),
+        ("burley_albedo", Published, burley_albedo),
+        ("diffuse_transmission", Specification, diffuse_transmission),
+        ("fd_wrap", Published, |a| fd_wrap(a.f64(), a.f64().max(0.0)).into()),
     ],
 };
 

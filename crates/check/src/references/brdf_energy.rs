@@ -2,19 +2,20 @@
 //! Fdez-Agüera, 2019; Kulla and Conty, 2017; Hill, in MaterialX; Karis, 2014; Lazarov, 2013, as
 //! Knarkowicz has it.
 
+use super::Source::{Published, Series};
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::energy",
     functions: &[
-        ("dfg_approx", dfg_approx),
-        ("energy_compensation", energy_compensation),
-        ("split_sum_multi", split_sum_multi),
-        ("ms_lobe", ms_lobe),
-        ("dfg_approx_hill", |a| hill(a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0))),
-        ("dfg_approx_karis", |a| karis(a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0))),
-        ("dfg_approx_lazarov", |a| lazarov(a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0))),
+        ("dfg_approx", Published, dfg_approx),
+        ("energy_compensation", Published, energy_compensation),
+        ("split_sum_multi", Series, split_sum_multi),
+        ("ms_lobe", Series, ms_lobe),
+        ("dfg_approx_hill", Published, |a| hill(a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0))),
+        ("dfg_approx_karis", Published, |a| karis(a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0))),
+        ("dfg_approx_lazarov", Published, |a| lazarov(a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0))),
     ],
 };
 

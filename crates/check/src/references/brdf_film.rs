@@ -1,6 +1,7 @@
 //! Sources: Belcour and Barla, 2017, and the coefficients of its supplement; Khronos Group,
 //! KHR_materials_iridescence, 2022.
 
+use super::Source::{Published, Specification};
 use super::ReferenceEntry;
 use super::brdf_fresnel::dielectric;
 use glam::DVec3;
@@ -9,8 +10,8 @@ use std::f64::consts::PI;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::film",
     functions: &[
-        ("film_sensitivity", |a| sensitivity(a.f64() * 1e-9, a.vec3()).into()),
-        ("iridescence", |a| iridescence(a.f64(), a.f64(), a.vec3(), a.f64(), a.f64()).into()),
+        ("film_sensitivity", Published, |a| sensitivity(a.f64() * 1e-9, a.vec3()).into()),
+        ("iridescence", Specification, |a| iridescence(a.f64(), a.f64(), a.vec3(), a.f64(), a.f64()).into()),
     ],
 };
 

@@ -2,21 +2,22 @@
 //! Optics, sections 1.5 and 14.2); Kutz, Hašan, Edmondson, 2021; Jakob et al., 2014; this library's
 //! fit of the average; Duntley, 1942; Gulbrandsen, 2014.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec3};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::fresnel",
     functions: &[
-        ("f0_from_ior", |a| dielectric(1.0, a.f64().max(0.0)).into()),
-        ("ior_from_f0", |a| ior_from_f0(a.f64()).into()),
-        ("f_dielectric", |a| dielectric(a.f64(), a.f64()).into()),
-        ("f_conductor", f_conductor),
-        ("f_conductor_channel", |a| conductor(a.f64(), a.f64(), a.f64()).into()),
-        ("f_schlick_f82", f_schlick_f82),
-        ("f_average_schlick", f_average_schlick),
-        ("f_average_dielectric", |a| average(a.f64()).into()),
-        ("ior_artistic", ior_artistic),
+        ("f0_from_ior", Published, |a| dielectric(1.0, a.f64().max(0.0)).into()),
+        ("ior_from_f0", Published, |a| ior_from_f0(a.f64()).into()),
+        ("f_dielectric", Published, |a| dielectric(a.f64(), a.f64()).into()),
+        ("f_conductor", Published, f_conductor),
+        ("f_conductor_channel", Published, |a| conductor(a.f64(), a.f64(), a.f64()).into()),
+        ("f_schlick_f82", Published, f_schlick_f82),
+        ("f_average_schlick", Published, f_average_schlick),
+        ("f_average_dielectric", Published, |a| average(a.f64()).into()),
+        ("ior_artistic", Published, ior_artistic),
     ],
 };
 

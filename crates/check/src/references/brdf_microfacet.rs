@@ -2,6 +2,7 @@
 //! KHR_materials_anisotropy, 2023; Tokuyoshi and Kaplanyan, 2019; Filament, section 4.10.1; OpenPBR
 //! 1.1; Kelemen and Szirmay-Kalos, 2001; Dupuy and Benyoub, 2023.
 
+use super::Source::{Published, Specification};
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -9,16 +10,16 @@ use std::f64::consts::{PI, TAU};
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::microfacet",
     functions: &[
-        ("d_ggx_aniso", |a| d_ggx_aniso(a.vec3(), a.vec2()).into()),
-        ("v_smith_ggx_aniso", v_smith_ggx_aniso),
-        ("alpha_aniso", alpha_aniso),
-        ("specular_aa", specular_aa),
-        ("bent_reflection", bent_reflection),
-        ("alpha_aniso_filament", alpha_filament),
-        ("alpha_aniso_disney", alpha_disney),
-        ("alpha_aniso_openpbr", alpha_openpbr),
-        ("v_kelemen", |a| (1.0 / (4.0 * a.f64().powi(2).max(f64::from(f32::MIN_POSITIVE)))).into()),
-        ("sample_ggx_visible", sample_visible),
+        ("d_ggx_aniso", Published, |a| d_ggx_aniso(a.vec3(), a.vec2()).into()),
+        ("v_smith_ggx_aniso", Published, v_smith_ggx_aniso),
+        ("alpha_aniso", Specification, alpha_aniso),
+        ("specular_aa", Published, specular_aa),
+        ("bent_reflection", Specification, bent_reflection),
+        ("alpha_aniso_filament", Published, alpha_filament),
+        ("alpha_aniso_disney", Published, alpha_disney),
+        ("alpha_aniso_openpbr", Specification, alpha_openpbr),
+        ("v_kelemen", Published, |a| (1.0 / (4.0 * a.f64().powi(2).max(f64::from(f32::MIN_POSITIVE)))).into()),
+        ("sample_ggx_visible", Published, sample_visible),
     ],
 };
 

@@ -2,6 +2,7 @@
 //! KHR_materials_sheen, 2020; the fit of the albedo: MaterialX shader library, 2020;
 //! Zeltner et al., 2022, in the fit of MaterialX, 2023.
 
+use super::Source::{Published, Specification};
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
@@ -9,16 +10,16 @@ use std::f64::consts::PI;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::sheen",
     functions: &[
-        ("d_charlie", |a| d_charlie(a.f64(), a.f64()).into()),
-        ("v_neubelt", v_neubelt),
-        ("charlie_exponent", |a| exponent(a.f64(), a.f64()).into()),
-        ("charlie_lambda", |a| lambda(a.f64(), a.f64()).into()),
-        ("v_charlie", v_charlie),
-        ("sheen_albedo", |a| sheen_albedo(a.f64(), a.f64()).into()),
-        ("sheen_scale", sheen_scale),
-        ("sheen_ltc", |a| ltc(a.f64(), a.f64())),
-        ("sheen_ltc_lobe", |a| ltc_lobe(a.vec3(), a.vec3()).into()),
-        ("v_neubelt_fast", v_neubelt),
+        ("d_charlie", Specification, |a| d_charlie(a.f64(), a.f64()).into()),
+        ("v_neubelt", Published, v_neubelt),
+        ("charlie_exponent", Specification, |a| exponent(a.f64(), a.f64()).into()),
+        ("charlie_lambda", Specification, |a| lambda(a.f64(), a.f64()).into()),
+        ("v_charlie", Specification, v_charlie),
+        ("sheen_albedo", Published, |a| sheen_albedo(a.f64(), a.f64()).into()),
+        ("sheen_scale", Specification, sheen_scale),
+        ("sheen_ltc", Published, |a| ltc(a.f64(), a.f64())),
+        ("sheen_ltc_lobe", Published, |a| ltc_lobe(a.vec3(), a.vec3()).into()),
+        ("v_neubelt_fast", Published, v_neubelt),
     ],
 };
 

@@ -2,6 +2,7 @@
 //! 3rd edition, section 7.6; Walter et al., 2007, equation 33; Heitz, 2014, equation 99; Schlick,
 //! 1994, equation 15.
 
+use super::Source::Published;
 use super::math_safe::safe_pow;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
@@ -10,19 +11,19 @@ use std::f64::consts::PI;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::specular",
     functions: &[
-        ("phong", |a| phong(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
-        ("phong_igl", phong_igl),
-        ("phong_oglpg_7_21", |a| phong_oglpg(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
-        ("blinn_phong", |a| blinn_phong(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
-        ("blinn_phong_half", blinn_phong_half),
-        ("blinn_phong_hpg", |a| blinn_phong_hpg(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
-        ("blinn_phong_normalized", blinn_phong_normalized),
-        ("d_ggx", d_ggx),
-        ("v_smith_ggx", v_smith_ggx),
-        ("f_schlick", f_schlick),
-        ("v_smith_ggx_fast", v_smith_ggx),
-        ("phong_fast", |a| phong_fast(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
-        ("blinn_phong_fast", |a| {
+        ("phong", Published, |a| phong(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
+        ("phong_igl", Published, phong_igl),
+        ("phong_oglpg_7_21", Published, |a| phong_oglpg(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
+        ("blinn_phong", Published, |a| blinn_phong(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
+        ("blinn_phong_half", Published, blinn_phong_half),
+        ("blinn_phong_hpg", Published, |a| blinn_phong_hpg(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
+        ("blinn_phong_normalized", Published, blinn_phong_normalized),
+        ("d_ggx", Published, d_ggx),
+        ("v_smith_ggx", Published, v_smith_ggx),
+        ("f_schlick", Published, f_schlick),
+        ("v_smith_ggx_fast", Published, v_smith_ggx),
+        ("phong_fast", Published, |a| phong_fast(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
+        ("blinn_phong_fast", Published, |a| {
             blinn_phong_fast(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()
         }),
     ],

@@ -1,15 +1,16 @@
 //! Source: Christensen and Burley, 2015, equations 3, 5 and 11.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use std::f64::consts::PI;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::subsurface",
     functions: &[
-        ("diffusion_profile", |a| profile(a.f64(), a.f64()).into()),
-        ("diffusion_cdf", |a| cdf(a.f64() * a.f64()).into()),
-        ("diffusion_s", diffusion_s),
-        ("diffusion_sample", |a| sample(a.f64(), a.f64()).into()),
+        ("diffusion_profile", Published, |a| profile(a.f64(), a.f64()).into()),
+        ("diffusion_cdf", Published, |a| cdf(a.f64() * a.f64()).into()),
+        ("diffusion_s", Published, diffusion_s),
+        ("diffusion_sample", Published, |a| sample(a.f64(), a.f64()).into()),
     ],
 };
 

@@ -1,6 +1,7 @@
 //! Sources: Khronos Group, KHR_materials_specular, _ior, _volume, _transmission and _dispersion,
 //! 2021 to 2024; Beer's and Snell's laws; Walter et al., 2007, equations 21, 33 and 34.
 
+use super::Source::{Published, Specification};
 use super::brdf_fresnel::dielectric;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec3};
@@ -9,14 +10,14 @@ use std::f64::consts::PI;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::transmission",
     functions: &[
-        ("specular_f0", specular_f0),
-        ("volume_transmittance", volume_transmittance),
-        ("refract_exit", refract_exit),
-        ("transmission_roughness", |a| (a.f64() * (2.0 * a.f64() - 2.0).clamp(0.0, 1.0)).into()),
-        ("btdf_thin", btdf_thin),
-        ("dispersion_ior", dispersion_ior),
-        ("btdf_volume", btdf_volume),
-        ("volume_transmittance_fast", volume_transmittance),
+        ("specular_f0", Specification, specular_f0),
+        ("volume_transmittance", Specification, volume_transmittance),
+        ("refract_exit", Specification, refract_exit),
+        ("transmission_roughness", Specification, |a| (a.f64() * (2.0 * a.f64() - 2.0).clamp(0.0, 1.0)).into()),
+        ("btdf_thin", Specification, btdf_thin),
+        ("dispersion_ior", Specification, dispersion_ior),
+        ("btdf_volume", Published, btdf_volume),
+        ("volume_transmittance_fast", Specification, volume_transmittance),
     ],
 };
 

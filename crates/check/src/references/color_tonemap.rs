@@ -2,6 +2,7 @@
 //! Hill, 2016; Hable, 2010; Reinhard et al., 2002, equation 4; Uchimura, 2017; Chow, the AgX of
 //! Blender 4, 2023; Polyphony Digital, 2025.
 
+use super::Source::{Published, Specification};
 use super::color_transfer::{from_ictcp, ictcp};
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DMat3, DVec2, DVec3};
@@ -9,20 +10,20 @@ use glam::{DMat3, DVec2, DVec3};
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "color::tonemap",
     functions: &[
-        ("agx_curve", |a| agx_curve(a.f64()).into()),
-        ("agx", |a| agx(a.vec3()).into()),
-        ("neutral", |a| neutral(a.vec3()).into()),
-        ("neutral_inverse", |a| neutral_inverse(a.vec3()).into()),
-        ("aces_hill", |a| aces_hill(a.vec3()).into()),
-        ("hable_channel", |a| hable(a.f64()).into()),
-        ("hable", |a| a.vec3().map(|x| (hable(2.0 * x) / hable(11.2)).clamp(0.0, 1.0)).into()),
-        ("reinhard_extended", reinhard_extended),
-        ("uchimura_channel", |a| uchimura(a.f64()).into()),
-        ("uchimura", |a| a.vec3().map(uchimura).into()),
-        ("agx_curve_blender", |a| agx_curve_blender(a.f64()).into()),
-        ("agx_blender", |a| agx_blender(a.vec3()).into()),
-        ("gt7_curve", |a| gt7_curve(a.f64()).into()),
-        ("gt7", |a| gt7(a.vec3()).into()),
+        ("agx_curve", Published, |a| agx_curve(a.f64()).into()),
+        ("agx", Published, |a| agx(a.vec3()).into()),
+        ("neutral", Specification, |a| neutral(a.vec3()).into()),
+        ("neutral_inverse", Specification, |a| neutral_inverse(a.vec3()).into()),
+        ("aces_hill", Published, |a| aces_hill(a.vec3()).into()),
+        ("hable_channel", Published, |a| hable(a.f64()).into()),
+        ("hable", Published, |a| a.vec3().map(|x| (hable(2.0 * x) / hable(11.2)).clamp(0.0, 1.0)).into()),
+        ("reinhard_extended", Published, reinhard_extended),
+        ("uchimura_channel", Published, |a| uchimura(a.f64()).into()),
+        ("uchimura", Published, |a| a.vec3().map(uchimura).into()),
+        ("agx_curve_blender", Published, |a| agx_curve_blender(a.f64()).into()),
+        ("agx_blender", Published, |a| agx_blender(a.vec3()).into()),
+        ("gt7_curve", Published, |a| gt7_curve(a.f64()).into()),
+        ("gt7", Published, |a| gt7(a.vec3()).into()),
     ],
 };
 

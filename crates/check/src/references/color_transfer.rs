@@ -1,29 +1,30 @@
 //! Sources: IEC 61966-2-1:1999; Reinhard et al., 2002, equation 3; Narkowicz, 2016; OpenGL 2.1
 //! specification, section 3.10 (fog); SMPTE ST 2084:2014; ITU-R BT.2100-2; Roberts, 1962.
 
+use super::Source::{Published, Specification};
 use super::{Expected, ReferenceEntry};
 use glam::{DMat3, DVec3};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "color::transfer",
     functions: &[
-        ("srgb_from_linear_channel", |a| encode(a.f64())),
-        ("linear_from_srgb_channel", |a| decode(a.f64())),
-        ("srgb_from_linear", |a| each(a.vec3(), encode)),
-        ("linear_from_srgb", |a| each(a.vec3(), decode)),
-        ("tonemap_reinhard", |a| each(a.vec3(), |x| (x.max(0.0) / (1.0 + x.max(0.0))).into())),
-        ("tonemap_aces", |a| each(a.vec3(), aces)),
-        ("pq_from_nits", |a| pq(a.f64()).into()),
-        ("nits_from_pq", |a| nits(a.f64()).into()),
-        ("hlg_from_linear", |a| hlg(a.f64()).into()),
-        ("linear_from_hlg", |a| from_hlg(a.f64()).into()),
-        ("ictcp_from_nits", |a| ictcp(a.vec3()).into()),
-        ("nits_from_ictcp", |a| from_ictcp(a.vec3()).into()),
-        ("dither", |a| dither(a.vec3(), a.f64(), a.f64()).into()),
-        ("fog_linear", |a| fog_linear(a.f64(), a.f64(), a.f64()).into()),
-        ("fog_exp", |a| (-(a.f64() * a.f64()).max(0.0)).exp().into()),
-        ("fog_exp2", |a| (-(a.f64() * a.f64()).powi(2)).exp().into()),
-        ("fog_scale_offset", |a| (a.f64() * a.f64() + a.f64()).clamp(0.0, 1.0).into()),
+        ("srgb_from_linear_channel", Specification, |a| encode(a.f64())),
+        ("linear_from_srgb_channel", Specification, |a| decode(a.f64())),
+        ("srgb_from_linear", Specification, |a| each(a.vec3(), encode)),
+        ("linear_from_srgb", Specification, |a| each(a.vec3(), decode)),
+        ("tonemap_reinhard", Published, |a| each(a.vec3(), |x| (x.max(0.0) / (1.0 + x.max(0.0))).into())),
+        ("tonemap_aces", Published, |a| each(a.vec3(), aces)),
+        ("pq_from_nits", Specification, |a| pq(a.f64()).into()),
+        ("nits_from_pq", Specification, |a| nits(a.f64()).into()),
+        ("hlg_from_linear", Specification, |a| hlg(a.f64()).into()),
+        ("linear_from_hlg", Specification, |a| from_hlg(a.f64()).into()),
+        ("ictcp_from_nits", Specification, |a| ictcp(a.vec3()).into()),
+        ("nits_from_ictcp", Specification, |a| from_ictcp(a.vec3()).into()),
+        ("dither", Published, |a| dither(a.vec3(), a.f64(), a.f64()).into()),
+        ("fog_linear", Specification, |a| fog_linear(a.f64(), a.f64(), a.f64()).into()),
+        ("fog_exp", Specification, |a| (-(a.f64() * a.f64()).max(0.0)).exp().into()),
+        ("fog_exp2", Specification, |a| (-(a.f64() * a.f64()).powi(2)).exp().into()),
+        ("fog_scale_offset", Published, |a| (a.f64() * a.f64() + a.f64()).clamp(0.0, 1.0).into()),
     ],
 };
 

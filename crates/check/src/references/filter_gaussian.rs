@@ -1,12 +1,13 @@
 //! Source: OpenGL: Build High Performance Graphics, recipe 7: exp(-i*i/16) over its sum, 21 taps.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec2;
 use lamplight_execute::sampling;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "filter::gaussian",
-    functions: &[("gaussian21", |a| weight(a.f64() as i32).into()), ("blur21", blur)],
+    functions: &[("gaussian21", Published, |a| weight(a.f64() as i32).into()), ("blur21", Published, blur)],
 };
 
 fn weight(i: i32) -> f64 {

@@ -1,12 +1,13 @@
 //! Sources: Wenzel, 2006; Quilez, 2010: the integral of the density along the view.
 
+use super::Source::{Integral, Published};
 use super::{CallArguments, Expected, ReferenceEntry};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "fog::height",
     functions: &[
-        ("fog_height", depth),
-        ("fog_transmittance", |a| (-a.f64().max(0.0)).exp().into()),
+        ("fog_height", Integral, depth),
+        ("fog_transmittance", Published, |a| (-a.f64().max(0.0)).exp().into()),
     ],
 };
 

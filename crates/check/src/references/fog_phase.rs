@@ -1,17 +1,18 @@
 //! Sources: Henyey and Greenstein, 1941; Cornette and Shanks, 1992; Draine, 2003; Jendersie and
 //! d'Eon, 2023.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use std::f64::consts::PI;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "fog::phase",
     functions: &[
-        ("hg", |a| hg(a.f64(), a.f64()).into()),
-        ("rayleigh_phase", |a| (3.0 / (16.0 * PI) * (1.0 + cosine(a.f64()).powi(2))).into()),
-        ("cornette_shanks", cornette_shanks),
-        ("draine", |a| draine(a.f64(), a.f64(), a.f64()).into()),
-        ("fog_droplet", droplet),
+        ("hg", Published, |a| hg(a.f64(), a.f64()).into()),
+        ("rayleigh_phase", Published, |a| (3.0 / (16.0 * PI) * (1.0 + cosine(a.f64()).powi(2))).into()),
+        ("cornette_shanks", Published, cornette_shanks),
+        ("draine", Published, |a| draine(a.f64(), a.f64(), a.f64()).into()),
+        ("fog_droplet", Published, droplet),
     ],
 };
 

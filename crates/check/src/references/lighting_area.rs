@@ -3,6 +3,7 @@
 //! "Moving Frostbite to Physically Based Rendering", 2014, section 4.7; Karis, "Real Shading in
 //! Unreal Engine 4", 2013; Heitz and Hill, 2017 (lines and disks).
 
+use super::Source::{Integral, Published};
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
@@ -10,19 +11,19 @@ use std::f64::consts::PI;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::area",
     functions: &[
-        ("ltc_edge", |a| edge(a.vec3(), a.vec3()).into()),
-        ("any_tangent", |a| any_tangent(a.vec3()).into()),
-        ("ltc_rect", ltc_rect),
-        ("ltc_disk", ltc_disk),
-        ("ltc_line", ltc_line),
-        ("ltc_uv", |a| ltc_uv(a.f64(), a.f64()).into()),
-        ("ltc_matrix", ltc_matrix),
-        ("sphere_irradiance", |a| sphere(a.f64(), a.f64()).into()),
-        ("disk_irradiance", disk),
-        ("nearest_sphere", |a| nearest_sphere(a.vec3(), a.vec3(), a.f64()).into()),
-        ("nearest_tube", nearest_tube),
-        ("area_alpha", area_alpha),
-        ("area_energy", |a| area_energy(a.f64(), a.f64()).into()),
+        ("ltc_edge", Published, |a| edge(a.vec3(), a.vec3()).into()),
+        ("any_tangent", Published, |a| any_tangent(a.vec3()).into()),
+        ("ltc_rect", Integral, ltc_rect),
+        ("ltc_disk", Integral, ltc_disk),
+        ("ltc_line", Integral, ltc_line),
+        ("ltc_uv", Published, |a| ltc_uv(a.f64(), a.f64()).into()),
+        ("ltc_matrix", Published, ltc_matrix),
+        ("sphere_irradiance", Integral, |a| sphere(a.f64(), a.f64()).into()),
+        ("disk_irradiance", Integral, disk),
+        ("nearest_sphere", Published, |a| nearest_sphere(a.vec3(), a.vec3(), a.f64()).into()),
+        ("nearest_tube", Published, nearest_tube),
+        ("area_alpha", Published, area_alpha),
+        ("area_energy", Published, |a| area_energy(a.f64(), a.f64()).into()),
     ],
 };
 

@@ -2,6 +2,7 @@
 //! de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014; Karis, "Real Shading in
 //! Unreal Engine 4", 2013; glTF extension KHR_lights_punctual; three.js.
 
+use super::Source::{Published, Specification};
 use super::ReferenceEntry;
 use super::math_safe::safe_pow;
 use glam::DVec3;
@@ -9,12 +10,12 @@ use glam::DVec3;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::attenuation",
     functions: &[
-        ("polynomial", |a| polynomial(a.f64(), a.vec3()).into()),
-        ("linear_radius", |a| linear_radius(a.f64(), a.f64()).into()),
-        ("inverse_square", |a| (1.0 / a.f64().max(a.f64())).into()),
-        ("window", |a| window((a.f64() * a.f64()).powi(2)).into()),
-        ("range_gltf", |a| range_gltf(a.f64(), a.f64()).into()),
-        ("decay_cutoff", |a| decay_cutoff(a.f64(), a.f64(), a.f64()).into()),
+        ("polynomial", Published, |a| polynomial(a.f64(), a.vec3()).into()),
+        ("linear_radius", Published, |a| linear_radius(a.f64(), a.f64()).into()),
+        ("inverse_square", Published, |a| (1.0 / a.f64().max(a.f64())).into()),
+        ("window", Published, |a| window((a.f64() * a.f64()).powi(2)).into()),
+        ("range_gltf", Specification, |a| range_gltf(a.f64(), a.f64()).into()),
+        ("decay_cutoff", Published, |a| decay_cutoff(a.f64(), a.f64(), a.f64()).into()),
     ],
 };
 

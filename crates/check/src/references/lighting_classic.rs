@@ -1,6 +1,7 @@
 //! Sources: OpenGL Programming Guide, examples 7.8, 7.10 and 7.21; Newcastle University, tutorial
 //! 11; OpenGL: Build High Performance Graphics, recipe 5 (a shadow of part strength).
 
+use super::Source::Published;
 use super::brdf_diffuse::lambert;
 use super::brdf_specular::{blinn_phong, phong_oglpg};
 use super::lighting_light::{Light, Sample};
@@ -10,11 +11,11 @@ use glam::DVec3;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::classic",
     functions: &[
-        ("accumulate", accumulate),
-        ("resolve", resolve),
-        ("shadow_mix", |a| shadow_mix(a.f64(), a.f64()).into()),
-        ("shade_ncl", shade_ncl),
-        ("shade_oglpg_7_21", shade_oglpg_7_21),
+        ("accumulate", Published, accumulate),
+        ("resolve", Published, resolve),
+        ("shadow_mix", Published, |a| shadow_mix(a.f64(), a.f64()).into()),
+        ("shade_ncl", Published, shade_ncl),
+        ("shade_oglpg_7_21", Published, shade_oglpg_7_21),
     ],
 };
 

@@ -1,13 +1,14 @@
 //! Sources: Olsson, Billeter and Assarsson, 2012, section 3.2; Sousa and Geffroy, 2016.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::cluster",
     functions: &[
-        ("cluster_slice", cluster_slice),
-        ("slice_depth", |a| border(a.f64(), a.f64(), a.f64(), a.f64()).into()),
-        ("cluster_index", cluster_index),
+        ("cluster_slice", Published, cluster_slice),
+        ("slice_depth", Published, |a| border(a.f64(), a.f64(), a.f64(), a.f64()).into()),
+        ("cluster_index", Published, cluster_index),
     ],
 };
 

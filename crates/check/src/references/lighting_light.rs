@@ -1,5 +1,6 @@
 //! Sources: OpenGL Programming Guide, examples 7.3 to 7.8.
 
+use super::Source::Published;
 use super::lighting_attenuation::polynomial;
 use super::lighting_spot::cone_exponent;
 use super::{CallArguments, Expected, ReferenceEntry};
@@ -8,10 +9,10 @@ use glam::DVec3;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::light",
     functions: &[
-        ("sample_directional", |a| directional(&Light::read(a)).words()),
-        ("sample_point", |a| point(&Light::read(a), a.vec3()).words()),
-        ("sample_spot", |a| spot(&Light::read(a), a.vec3()).words()),
-        ("sample_light", sample_light),
+        ("sample_directional", Published, |a| directional(&Light::read(a)).words()),
+        ("sample_point", Published, |a| point(&Light::read(a), a.vec3()).words()),
+        ("sample_spot", Published, |a| spot(&Light::read(a), a.vec3()).words()),
+        ("sample_light", Published, sample_light),
     ],
 };
 

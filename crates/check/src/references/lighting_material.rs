@@ -1,12 +1,13 @@
 //! Source: OpenGL Programming Guide, example 7.11: as printed, and with what its text means.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::material",
     functions: &[
-        ("material_index", material_index),
-        ("material_index_oglpg", material_index_oglpg),
+        ("material_index", Published, material_index),
+        ("material_index_oglpg", Published, material_index_oglpg),
     ],
 };
 

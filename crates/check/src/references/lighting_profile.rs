@@ -1,5 +1,6 @@
 //! Sources: IES LM-63; Segal et al., 1992, section 3.
 
+use super::Source::{Published, Specification};
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -7,9 +8,9 @@ use std::f64::consts::PI;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::profile",
     functions: &[
-        ("ies_u", |a| (a.f64().clamp(-1.0, 1.0).acos() / PI).into()),
-        ("ies_uv", ies_uv),
-        ("cookie_uv", cookie_uv),
+        ("ies_u", Specification, |a| (a.f64().clamp(-1.0, 1.0).acos() / PI).into()),
+        ("ies_uv", Specification, ies_uv),
+        ("cookie_uv", Published, cookie_uv),
     ],
 };
 

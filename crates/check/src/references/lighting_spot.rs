@@ -2,17 +2,18 @@
 //! Performance Graphics, recipe 4, and Igalia, part I (exclusive); glTF extension
 //! KHR_lights_punctual (scale and offset).
 
+use super::Source::{Published, Specification};
 use super::ReferenceEntry;
 use super::math_safe::safe_pow;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::spot",
     functions: &[
-        ("cone_hard", |a| (a.f64() >= a.f64()).into()),
-        ("cone_hard_exclusive", |a| (a.f64() > a.f64()).into()),
-        ("cone_exponent", |a| cone_exponent(a.f64(), a.f64(), a.f64()).into()),
-        ("cone_smooth", |a| cone_smooth(a.f64(), a.f64(), a.f64()).into()),
-        ("cone_scale_offset", |a| (a.f64() * a.f64() + a.f64()).clamp(0.0, 1.0).powi(2).into()),
+        ("cone_hard", Published, |a| (a.f64() >= a.f64()).into()),
+        ("cone_hard_exclusive", Published, |a| (a.f64() > a.f64()).into()),
+        ("cone_exponent", Published, |a| cone_exponent(a.f64(), a.f64(), a.f64()).into()),
+        ("cone_smooth", Published, |a| cone_smooth(a.f64(), a.f64(), a.f64()).into()),
+        ("cone_scale_offset", Specification, |a| (a.f64() * a.f64() + a.f64()).clamp(0.0, 1.0).powi(2).into()),
     ],
 };
 

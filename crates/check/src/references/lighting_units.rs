@@ -1,20 +1,21 @@
 //! Sources: Lagarde and de Rousiers, 2014, sections 4.5, 4.7 and 5.1; ISO 2720:1974; ISO
 //! 12232:2006; Guy and Agopian, 2018, section 5.2.2.2.
 
+use super::Source::{Published, Specification};
 use super::{CallArguments, Expected, ReferenceEntry};
 use std::f64::consts::PI;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::units",
     functions: &[
-        ("intensity_point", |a| (a.f64() / (4.0 * PI)).into()),
-        ("intensity_spot", intensity_spot),
-        ("intensity_spot_filament", |a| (a.f64() / PI).into()),
-        ("luminance_area", |a| (a.f64() / (PI * a.f64().max(f64::from(1e-12f32)))).into()),
-        ("ev100", ev100),
-        ("ev100_from_luminance", |a| metered(a.f64() * 100.0 / 12.5).into()),
-        ("ev100_from_illuminance", |a| metered(a.f64() * 100.0 / 250.0).into()),
-        ("exposure", |a| (65.0 / 78.0 * (-a.f64().clamp(-120.0, 120.0)).exp2()).into()),
+        ("intensity_point", Published, |a| (a.f64() / (4.0 * PI)).into()),
+        ("intensity_spot", Published, intensity_spot),
+        ("intensity_spot_filament", Published, |a| (a.f64() / PI).into()),
+        ("luminance_area", Published, |a| (a.f64() / (PI * a.f64().max(f64::from(1e-12f32)))).into()),
+        ("ev100", Specification, ev100),
+        ("ev100_from_luminance", Specification, |a| metered(a.f64() * 100.0 / 12.5).into()),
+        ("ev100_from_illuminance", Specification, |a| metered(a.f64() * 100.0 / 250.0).into()),
+        ("exposure", Specification, |a| (65.0 / 78.0 * (-a.f64().clamp(-120.0, 120.0)).exp2()).into()),
     ],
 };
 

@@ -1,12 +1,13 @@
 //! Sources: the definition of the inverse; the normal matrix as all the books have it: the inverse
 //! transpose of the upper 3x3 part.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DMat3;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "math::matrix",
-    functions: &[("inverse3", |a| inverse(a.mat3()).into()), ("normal_matrix", normal_matrix)],
+    functions: &[("inverse3", Published, |a| inverse(a.mat3()).into()), ("normal_matrix", Published, normal_matrix)],
 };
 
 /// The inverse; zero for a matrix whose determinant is below the normal numbers of f32.

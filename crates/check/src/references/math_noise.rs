@@ -2,6 +2,7 @@
 //! GPU Rendering", 2020 (one step of PCG); OpenGL: Build High Performance Graphics, recipe 6 (the
 //! sine); Vogel, 1979 (the golden angle); Roberts, 2018 (the sequence R2).
 
+use super::Source::Published;
 use super::{Expected, ReferenceEntry};
 use glam::{DVec2, DVec4};
 use std::f64::consts::{PI, TAU};
@@ -9,14 +10,14 @@ use std::f64::consts::{PI, TAU};
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "math::noise",
     functions: &[
-        ("interleaved_gradient_noise", |a| gradient_noise(a.vec2())),
-        ("ign_time", |a| gradient_noise(a.vec2() + 5.588238 * (a.f64() % 64.0))),
-        ("hash_pcg", |a| f64::from(hash(a.f64() as u32)).into()),
-        ("pixel_seed", |a| f64::from(pixel_seed(a.vec2())).into()),
-        ("unit_float", |a| unit(a.f64() as u32).into()),
-        ("r2_sequence", |a| r2(a.f64()).into()),
-        ("random_hpg", |a| random_hpg(a.vec4()).into()),
-        ("vogel_disk", |a| vogel_disk(a.f64(), a.f64(), a.f64()).into()),
+        ("interleaved_gradient_noise", Published, |a| gradient_noise(a.vec2())),
+        ("ign_time", Published, |a| gradient_noise(a.vec2() + 5.588238 * (a.f64() % 64.0))),
+        ("hash_pcg", Published, |a| f64::from(hash(a.f64() as u32)).into()),
+        ("pixel_seed", Published, |a| f64::from(pixel_seed(a.vec2())).into()),
+        ("unit_float", Published, |a| unit(a.f64() as u32).into()),
+        ("r2_sequence", Published, |a| r2(a.f64()).into()),
+        ("random_hpg", Published, |a| random_hpg(a.vec4()).into()),
+        ("vogel_disk", Published, |a| vogel_disk(a.f64(), a.f64(), a.f64()).into()),
     ],
 };
 

@@ -1,16 +1,17 @@
 //! Sources: IEEE 754-2019, section 3.4; OpenGL Programming Guide, example 7.2.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "math::safe",
     functions: &[
-        ("safe_normalize", safe_normalize),
-        ("normalize_or_zero", |a| a.vec3().normalize_or_zero().into()),
-        ("cosine_power", |a| safe_pow(a.f64(), a.f64()).into()),
-        ("safe_pow", |a| safe_pow(a.f64(), a.f64()).into()),
-        ("saturate_color", |a| a.vec3().clamp(DVec3::ZERO, DVec3::ONE).into()),
+        ("safe_normalize", Published, safe_normalize),
+        ("normalize_or_zero", Published, |a| a.vec3().normalize_or_zero().into()),
+        ("cosine_power", Published, |a| safe_pow(a.f64(), a.f64()).into()),
+        ("safe_pow", Published, |a| safe_pow(a.f64(), a.f64()).into()),
+        ("saturate_color", Published, |a| a.vec3().clamp(DVec3::ZERO, DVec3::ONE).into()),
     ],
 };
 

@@ -2,18 +2,19 @@
 //! High Performance Graphics, recipe 7 (a constant); Holbert, 2011 (normal offset); Isidoro, 2006
 //! (receiver plane).
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DMat2, DVec2};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::bias",
     functions: &[
-        ("constant_bias", |a| (a.f64() - a.f64()).into()),
-        ("slope_bias", |a| slope(a.f64(), a.f64(), a.f64()).into()),
-        ("normal_offset", normal_offset),
-        ("receiver_plane", receiver_plane),
-        ("cube_texel", |a| cube_texel(a.f64(), a.f64()).into()),
-        ("cube_bias", cube_bias),
+        ("constant_bias", Published, |a| (a.f64() - a.f64()).into()),
+        ("slope_bias", Published, |a| slope(a.f64(), a.f64(), a.f64()).into()),
+        ("normal_offset", Published, normal_offset),
+        ("receiver_plane", Published, receiver_plane),
+        ("cube_texel", Published, |a| cube_texel(a.f64(), a.f64()).into()),
+        ("cube_bias", Published, cube_bias),
     ],
 };
 

@@ -1,16 +1,17 @@
 //! Sources: Zhang, Sun, Xu and Lun, 2006; Microsoft, "Cascaded Shadow Maps"; Valient, 2008.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec4};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::cascade",
     functions: &[
-        ("cascade_index", |a| (index(a.f64(), a.vec4()) as f64).into()),
-        ("cascade_blend", blend),
-        ("cascade_split", split),
-        ("cascade_snap", snap),
-        ("bounding_sphere", |a| bounding_sphere(a.f64(), a.f64(), a.vec2()).into()),
+        ("cascade_index", Published, |a| (index(a.f64(), a.vec4()) as f64).into()),
+        ("cascade_blend", Published, blend),
+        ("cascade_split", Published, split),
+        ("cascade_snap", Published, snap),
+        ("bounding_sphere", Published, |a| bounding_sphere(a.f64(), a.f64(), a.vec2()).into()),
     ],
 };
 

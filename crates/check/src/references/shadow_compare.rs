@@ -3,6 +3,7 @@
 //! Castaño, 2013 (the 1-2-1 and 1-3-4-3-1 bells); Vogel, 1979 (the disk); Fernando, 2005 (blockers
 //! and penumbra); Gerasimov, GPU Gems, chapter 12 (the cube).
 
+use super::Source::Published;
 use super::math_noise::{hash, pixel_seed, random_hpg, unit, vogel_disk};
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec4};
@@ -12,20 +13,20 @@ use lamplight_execute::sampling;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::compare",
     functions: &[
-        ("compare_tap", compare_tap),
-        ("hard", |a| averaged(a, |_, _| vec![(1.0, DVec2::ZERO)])),
-        ("pcf_grid", |a| averaged(a, |a, _| bell(&vec![1.0; 2 * a.f64() as usize + 1], 2.0))),
-        ("pcf_3x3", |a| averaged(a, |_, _| bell(&[1.0; 3], 2.0))),
-        ("pcf_5x5", |a| averaged(a, |_, _| bell(&[1.0; 5], 2.0))),
-        ("pcf_castano_3", |a| averaged(a, |_, _| bell(&[1.0, 2.0, 1.0], 1.0))),
-        ("castano_row", castano_row),
-        ("pcf_castano_5", |a| averaged(a, |_, _| bell(&[1.0, 3.0, 4.0, 3.0, 1.0], 1.0))),
-        ("pcf_random16", |a| shrunk(a, random16)),
-        ("pcf_random16_hpg", random16_hpg),
-        ("pcf_vogel", |a| shrunk(a, vogel)),
-        ("mean_blocker", mean_blocker),
-        ("pcss", pcss),
-        ("cube_compare", cube_compare),
+        ("compare_tap", Published, compare_tap),
+        ("hard", Published, |a| averaged(a, |_, _| vec![(1.0, DVec2::ZERO)])),
+        ("pcf_grid", Published, |a| averaged(a, |a, _| bell(&vec![1.0; 2 * a.f64() as usize + 1], 2.0))),
+        ("pcf_3x3", Published, |a| averaged(a, |_, _| bell(&[1.0; 3], 2.0))),
+        ("pcf_5x5", Published, |a| averaged(a, |_, _| bell(&[1.0; 5], 2.0))),
+        ("pcf_castano_3", Published, |a| averaged(a, |_, _| bell(&[1.0, 2.0, 1.0], 1.0))),
+        ("castano_row", Published, castano_row),
+        ("pcf_castano_5", Published, |a| averaged(a, |_, _| bell(&[1.0, 3.0, 4.0, 3.0, 1.0], 1.0))),
+        ("pcf_random16", Published, |a| shrunk(a, random16)),
+        ("pcf_random16_hpg", Published, random16_hpg),
+        ("pcf_vogel", Published, |a| shrunk(a, vogel)),
+        ("mean_blocker", Published, mean_blocker),
+        ("pcss", Published, pcss),
+        ("cube_compare", Published, cube_compare),
     ],
 };
 

@@ -1,14 +1,15 @@
 //! Sources: Sousa, Kasyan and Schulz, 2011; Chan, 2018.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::contact",
     functions: &[
-        ("contact_hit", hit),
-        ("march_point", march_point),
-        ("edge_fade", edge_fade),
-        ("micro_shadow", |a| micro_shadow(a.f64(), a.f64()).into()),
+        ("contact_hit", Published, hit),
+        ("march_point", Published, march_point),
+        ("edge_fade", Published, edge_fade),
+        ("micro_shadow", Published, |a| micro_shadow(a.f64(), a.f64()).into()),
     ],
 };
 

@@ -2,22 +2,23 @@
 //! Graphics, recipe 5 (the guard on w); Igalia, part II (the depth view); Gerasimov, GPU Gems,
 //! chapter 12 (the largest component is the distance along the face's axis).
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec4;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::coord",
     functions: &[
-        ("is_on_map", |a| {
+        ("is_on_map", Published, |a| {
             [a.f64(), a.f64()].iter().all(|value| (0.0..=1.0).contains(value)).into()
         }),
-        ("shadow_coord", shadow_coord),
-        ("project", |a| project(a.vec4(), a.f64())),
-        ("project_gl", project_gl),
-        ("linearize_depth", linearize_depth),
-        ("depth_view_igl", |a| (1.0 - (1.0 - a.f64()) * 100.0).into()),
-        ("cube_depth", cube_depth),
-        ("paraboloid_uv", paraboloid_uv),
+        ("shadow_coord", Published, shadow_coord),
+        ("project", Published, |a| project(a.vec4(), a.f64())),
+        ("project_gl", Published, project_gl),
+        ("linearize_depth", Published, linearize_depth),
+        ("depth_view_igl", Published, |a| (1.0 - (1.0 - a.f64()) * 100.0).into()),
+        ("cube_depth", Published, cube_depth),
+        ("paraboloid_uv", Published, paraboloid_uv),
     ],
 };
 

@@ -1,20 +1,21 @@
 //! Source: Lauritzen and McCool, 2008: moments of the depth as a share of an interval; the bound is
 //! that of Chebyshev's one-sided inequality, which is reached by two depths.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec3};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::layered",
     functions: &[
-        ("lvsm_layer", |a| (layer(a.f64(), a.vec3()) as f64).into()),
-        ("lvsm_range", |a| range(a.f64(), a.vec3(), a.f64()).into()),
-        ("lvsm_warp", |a| share(a.f64(), a.vec2()).into()),
-        ("lvsm_moments", |a| {
+        ("lvsm_layer", Published, |a| (layer(a.f64(), a.vec3()) as f64).into()),
+        ("lvsm_range", Published, |a| range(a.f64(), a.vec3(), a.f64()).into()),
+        ("lvsm_warp", Published, |a| share(a.f64(), a.vec2()).into()),
+        ("lvsm_moments", Published, |a| {
             let share = share(a.f64(), a.vec2());
             DVec2::new(share, share.powi(2)).into()
         }),
-        ("lvsm_visibility", visibility),
+        ("lvsm_visibility", Published, visibility),
     ],
 };
 

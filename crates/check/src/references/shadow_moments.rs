@@ -2,27 +2,28 @@
 //! Lauritzen, GPU Gems 3, chapter 8 (slope, bleeding); Lauritzen and McCool, 2008 (exponential);
 //! Annen et al., 2008 (exponential shadow maps); Peters and Klein, 2015 (four moments).
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::moments",
     functions: &[
-        ("vsm_moments", |a| moments(a.f64()).into()),
-        ("vsm_moments_slope", |a| {
+        ("vsm_moments", Published, |a| moments(a.f64()).into()),
+        ("vsm_moments_slope", Published, |a| {
             (moments(a.f64()) + DVec2::Y * 0.25 * a.vec2().length_squared()).into()
         }),
-        ("chebyshev", |a| chebyshev(a.vec2(), a.f64(), a.f64(), a.f64()).into()),
-        ("vsm_visibility", vsm_visibility),
-        ("evsm_warp", |a| warp(a.f64(), a.vec2()).into()),
-        ("evsm_moments", evsm_moments),
-        ("evsm_visibility", evsm_visibility),
-        ("esm_moment", |a| exponent(a.f64(), a.f64()).exp().into()),
-        ("esm_visibility", esm_visibility),
-        ("msm_moments", |a| powers(a.f64()).into()),
-        ("msm_quantise", |a| quantise(a.vec4()).into()),
-        ("msm_dequantise", |a| dequantise(a.vec4()).into()),
-        ("msm_visibility", |a| msm_visibility(a.vec4(), a.f64(), a.f64()).into()),
+        ("chebyshev", Published, |a| chebyshev(a.vec2(), a.f64(), a.f64(), a.f64()).into()),
+        ("vsm_visibility", Published, vsm_visibility),
+        ("evsm_warp", Published, |a| warp(a.f64(), a.vec2()).into()),
+        ("evsm_moments", Published, evsm_moments),
+        ("evsm_visibility", Published, evsm_visibility),
+        ("esm_moment", Published, |a| exponent(a.f64(), a.f64()).exp().into()),
+        ("esm_visibility", Published, esm_visibility),
+        ("msm_moments", Published, |a| powers(a.f64()).into()),
+        ("msm_quantise", Published, |a| quantise(a.vec4()).into()),
+        ("msm_dequantise", Published, |a| dequantise(a.vec4()).into()),
+        ("msm_visibility", Published, |a| msm_visibility(a.vec4(), a.f64(), a.f64()).into()),
     ],
 };
 

@@ -1,10 +1,11 @@
 //! Source: Fernando, 2005: similar triangles.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::penumbra",
-    functions: &[("pcss_width", near), ("pcss_width_directional", distant)],
+    functions: &[("pcss_width", Published, near), ("pcss_width_directional", Published, distant)],
 };
 
 /// The penumbra by similar triangles: size*(receiver/blocker - 1).

@@ -1,11 +1,12 @@
 //! Sources: Quilez, 2010; Aaltonen, 2018.
 
+use super::Source::Published;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec2;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::sdf",
-    functions: &[("sdf_soft_step", soft_step), ("sdf_soft_smooth", |a| smooth(a.f64()).into())],
+    functions: &[("sdf_soft_step", Published, soft_step), ("sdf_soft_smooth", Published, |a| smooth(a.f64()).into())],
 };
 
 /// The circles of two steps, one `ph` behind the other, meet at a point beside the ray; its

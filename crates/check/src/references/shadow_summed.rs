@@ -1,6 +1,7 @@
 //! Sources: Crow, 1984; Lauritzen, GPU Gems 3, 2007, chapter 8. The map is found again from its table,
 //! and every texel is weighed by how much of it lies in the rectangle.
 
+use super::Source::Integral;
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec2;
 use lamplight_execute::fixture::FixtureTexture;
@@ -8,12 +9,12 @@ use lamplight_execute::fixture::FixtureTexture;
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::summed",
     functions: &[
-        ("summed_corner", corner),
-        ("summed_moments", |a| match read_square(a) {
+        ("summed_corner", Integral, corner),
+        ("summed_moments", Integral, |a| match read_square(a) {
             Some(moments) => moments.into(),
             None => f64::NAN.into(),
         }),
-        ("savsm", savsm),
+        ("savsm", Integral, savsm),
     ],
 };
 

@@ -1,23 +1,24 @@
 //! Sources: Newcastle University, tutorial 11 (face normals); Blinn, 1978, and glTF 2.0 (normal
 //! maps and tangents with the bitangent's sign); Hill, 2012 (blending).
 
+use super::Source::{Published, Specification};
 use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "surface::normal",
     functions: &[
-        ("face_normal_area", |a| area(a.vec3(), a.vec3(), a.vec3()).into()),
-        ("face_normal", |a| {
+        ("face_normal_area", Published, |a| area(a.vec3(), a.vec3(), a.vec3()).into()),
+        ("face_normal", Published, |a| {
             area(a.vec3(), a.vec3(), a.vec3()).try_normalize().unwrap_or(DVec3::Z).into()
         }),
-        ("perturb_normal", perturb),
-        ("blend_rnm", blend_rnm),
-        ("spheremap_encode", |a| spheremap(a.vec3()).into()),
-        ("spheremap_decode", |a| from_spheremap(a.vec2()).into()),
-        ("blend_udn", |a| slopes(a, |_| 1.0)),
-        ("blend_whiteout", |a| slopes(a, |detail| detail.z)),
-        ("world_tangent", world_tangent),
+        ("perturb_normal", Published, perturb),
+        ("blend_rnm", Published, blend_rnm),
+        ("spheremap_encode", Published, |a| spheremap(a.vec3()).into()),
+        ("spheremap_decode", Published, |a| from_spheremap(a.vec2()).into()),
+        ("blend_udn", Published, |a| slopes(a, |_| 1.0)),
+        ("blend_whiteout", Published, |a| slopes(a, |detail| detail.z)),
+        ("world_tangent", Specification, world_tangent),
     ],
 };
 

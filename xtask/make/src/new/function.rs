@@ -87,7 +87,7 @@ fn steps(stem: &str, reference: &str, new: &Signature<'_>, is_new: bool) -> Vec<
         ),
         format!("{stem}.glsl is translated from that: `cargo xtask docs` makes it again"),
         format!(
-            "{reference}: the formula in f64, from the source and not from the shader, with the limits of guards as the shader has them (`f64::from(1e-4f32)`), and its first lines, which list the sources; then `cargo build`, since references are part of the command"
+            "{reference}: the formula in f64, from the source and not from the shader, with the limits of guards as the shader has them (`f64::from(1e-4f32)`), what it is written from (`Integral`, `Published`, `Specification` or `Series`), and its first lines, which list the sources; then `cargo build`, since references are part of the command"
         ),
         format!(
             "{stem}.toml: `tolerance` and `laws`, in one of the forms above them (test new::forms), and inputs outside the domain, for which `Edges:` says the result; `cargo xtask check {folder}/{module}` measures the tolerance, and with `--spec` it lists what WGSL allows, which the tolerance should not be below; `shaderlib/tolerances.toml` needs no line"
@@ -256,8 +256,8 @@ fn reference_text(old: Option<&str>, new: &Signature<'_>) -> Result<String, Stri
          ReferenceEntry {{ module: \"{folder}::{module}\", functions: &[] }};\n"
     );
     let old = old.unwrap_or(&fresh);
-    let text =
-        with_row(old, &format!("({name:?}, {name})")).ok_or("has no list `functions: &[...]`")?;
+    let text = with_row(old, &format!("({name:?}, super::Source::Published, {name})"))
+        .ok_or("has no list `functions: &[...]`")?;
     let names = new.list(|one| one.name.to_owned());
     let reads = new.list(|one| format!("a.{}()", one.ty.read));
     let (names, reads) = match new.parameters.len() {
