@@ -15,13 +15,15 @@ use lamplight::validators::{self, Novelty, Output, SeenText};
 use libtest_mimic::{Failed, Trial};
 
 use lines::{lines_of_few_permutations, others_go_on, validated_once};
-use placed::{glsl_means_something_else, refusals_are_placed, writers_are_placed};
+use placed::{
+    glsl_means_something_else, matrices_of_halves, refusals_are_placed, writers_are_placed,
+};
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 14] = [
+    let cases: [Case; 15] = [
         ("every_validator_refuses", every_validator_refuses),
         ("one_of_many_is_found", one_of_many_is_found),
         ("numbers_of_names_are_not_new", numbers_of_names_are_not_new),
@@ -29,6 +31,7 @@ pub fn tests() -> Vec<Trial> {
         ("refusals_are_placed", refusals_are_placed),
         ("writers_are_placed", writers_are_placed),
         ("glsl_means_something_else", glsl_means_something_else),
+        ("matrices_of_halves", matrices_of_halves),
         ("what_passed_is_known", what_passed_is_known),
         ("missing_programs_are_reported", missing_programs_are_reported),
         ("lines_of_few_permutations", lines_of_few_permutations),

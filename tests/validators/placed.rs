@@ -73,6 +73,31 @@ fn looked(at: vec3f) -> vec4f { return textureSample(cubes, smp, at, 1); }
     expect(&package.run(&["gen", "--no-cache"])?, 1, &words)
 }
 
+/// Vulkan 1.0 lays matrices of `f16` otherwise in uniform blocks, which naga does not tell.
+pub fn matrices_of_halves() -> Outcome {
+    let text = |space: &str| {
+        format!(
+            "enable f16;
+struct Turn {{ by: f16, turns: mat3x4<f16> }}
+@if(bits) @group(0) @binding(0) var<{space}> turn: Turn;
+@fragment fn fs_main(@location(0) at: vec3f) -> @location(0) vec4f {{
+    @if(bits) {{ return vec4f(turn.turns[2]); }}
+    @else {{ return vec4f(at, 0.0); }}
+}}
+"
+        )
+    };
+    let manifest = COUNTED_MANIFEST.replace("\"essl300\", \"hlsl\"", "\"spirv\"");
+    let package = Package::new(&manifest, &text("uniform"))?;
+    let words = ["target `spirv`: a matrix of `f16`", "one.wesl:3:", "in permutation `bits`"];
+    expect(&package.run(&["gen", "--no-cache"])?, 1, &words)?;
+    let package = Package::new(&manifest, &text("storage"))?;
+    expect(&package.run(&["gen", "--no-cache"])?, 0, &[])?;
+    let manifest = COUNTED_MANIFEST.replace("\"essl300\", \"hlsl\"", "\"msl\"");
+    let package = Package::new(&manifest, &text("uniform"))?;
+    expect(&package.run(&["gen", "--no-cache"])?, 0, &[])
+}
+
 /// Code is refused at the author's line if GLSL cannot express it, or if its GLSL output would be
 /// valid and compute something else. For other targets it is compiled.
 pub fn glsl_means_something_else() -> Outcome {

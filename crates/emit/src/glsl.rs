@@ -140,6 +140,7 @@ fn first_needs(version: Version) -> Needs {
         clamped_bytes: !has_since(version, 400, Some(310)),
         clamped_words: !has_since(version, 420, Some(300)),
         enclosed_bytes: true,
+        enclosed_subtrahends: true,
         separate_choices: false,
         unpacked_choices: false,
         masked_shifts: true,

@@ -8,7 +8,7 @@
 use naga::back::glsl::Version;
 use naga::{
     AddressSpace, Binding, Block, BuiltIn, Expression, Function, Handle, ImageClass,
-    ImageDimension, ImageQuery, MathFunction, Module, SampleLevel, Span, Statement, Type,
+    ImageDimension, ImageQuery, MathFunction, Module, SampleLevel, Scalar, Span, Statement, Type,
     TypeInner, VectorSize,
 };
 
@@ -220,6 +220,9 @@ pub fn check_lacks(
         for span in discards_in_continuing(module) {
             refuse(format!("target `spirv`: {DISCARD}"), span, "it is in here");
         }
+        for span in half_matrices(module) {
+            refuse(format!("target `spirv`: {HALF_MATRIX}"), span, "it is in here");
+        }
     }
     if found.is_empty() { Ok(()) } else { Err(found) }
 }
@@ -299,9 +302,28 @@ fn group_count(composed: &Composed) -> Span {
 
 const DISCARD: &str = "a loop cannot end an invocation in `continuing`: discard in its body";
 
+const HALF_MATRIX: &str = "a matrix of `f16` in a uniform block has another layout in Vulkan 1.0: use \
+     vectors, or a storage buffer";
+
 /// Why SPIR-V cannot express a module.
 pub fn spirv_lack(module: &Module) -> Option<String> {
-    (!discards_in_continuing(module).is_empty()).then(|| DISCARD.to_owned())
+    if !discards_in_continuing(module).is_empty() {
+        return Some(DISCARD.to_owned());
+    }
+    half_matrices(module).next().is_some().then(|| HALF_MATRIX.to_owned())
+}
+
+/// The uniform blocks with a matrix of `f16`, whose columns are not 16 bytes apart.
+fn half_matrices(module: &Module) -> impl Iterator<Item = Span> {
+    let is_half = |rows: VectorSize, scalar: Scalar| {
+        // naga writes those of two rows as vectors.
+        scalar == Scalar::F16 && rows != VectorSize::Bi
+    };
+    let blocks = module.global_variables.iter();
+    let blocks = blocks.filter(|(_, one)| one.space == AddressSpace::Uniform);
+    blocks
+        .filter(move |(_, one)| has_matrix(module, one.ty, &is_half))
+        .map(|(handle, _)| module.global_variables.get_span(handle))
 }
 
 /// The places of `continuing` blocks that discard. SPIR-V must get back to the start of the loop from
@@ -349,16 +371,21 @@ fn two_rows(module: &Module) -> impl Iterator<Item = Span> {
     let blocks = blocks
         .filter(|(_, one)| one.space == AddressSpace::Uniform || immediates::is_immediate(one));
     blocks
-        .filter(|(_, one)| has_two_rows(module, one.ty))
+        .filter(|(_, one)| has_matrix(module, one.ty, &|rows, _| rows == VectorSize::Bi))
         .map(|(handle, _)| module.global_variables.get_span(handle))
 }
 
-fn has_two_rows(module: &Module, ty: Handle<Type>) -> bool {
+/// Whether a type has a matrix of a kind in it.
+fn has_matrix(
+    module: &Module,
+    ty: Handle<Type>,
+    is_such: &dyn Fn(VectorSize, Scalar) -> bool,
+) -> bool {
     match &module.types[ty].inner {
-        TypeInner::Matrix { rows, columns: _, scalar: _ } => *rows == VectorSize::Bi,
-        TypeInner::Array { base, size: _, stride: _ } => has_two_rows(module, *base),
+        TypeInner::Matrix { rows, columns: _, scalar } => is_such(*rows, *scalar),
+        TypeInner::Array { base, size: _, stride: _ } => has_matrix(module, *base, is_such),
         TypeInner::Struct { members, span: _ } => {
-            members.iter().any(|member| has_two_rows(module, member.ty))
+            members.iter().any(|member| has_matrix(module, member.ty, is_such))
         }
         _ => false,
     }

@@ -38,6 +38,7 @@ mod rebuild;
 mod reflect;
 mod remainder;
 mod rename;
+mod results;
 mod rows;
 mod sample_mask;
 mod setters;

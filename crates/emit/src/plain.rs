@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{
-    Arena, BinaryOperator, Expression, Function, Handle, Literal, MathFunction, Module, Scalar,
-    ScalarKind, Span, Type, TypeInner, UniqueArena, VectorSize,
+    Arena, AtomicFunction, BinaryOperator, Block, Expression, Function, Handle, Literal,
+    MathFunction, Module, Scalar, ScalarKind, Span, Statement, Type, TypeInner, UnaryOperator,
+    UniqueArena, VectorSize,
 };
 
 use super::rebuild::rebuild;
-use lamplight_validate::info_unchecked;
+use lamplight_validate::{info_unchecked, inner_blocks};
 
 type Value = Handle<Expression>;
 
@@ -34,6 +35,9 @@ pub struct Needs {
     /// Four unsigned numbers packed to bytes, as an operand of something: naga's writers of texts put
     /// no parentheses around the operators that they write for it.
     pub enclosed_bytes: bool,
+    /// Values that an atomic function subtracts: naga writes a `-` before them for GLSL, also before
+    /// another one.
+    pub enclosed_subtrahends: bool,
     /// Vectors of three as what is chosen between: Metal packs them where they are members, and takes
     /// a choice between a packed vector and another one for ambiguous.
     pub unpacked_choices: bool,
@@ -51,8 +55,8 @@ enum Form {
     /// A division or a remainder: of vectors of this size, of signed integers.
     Defined(Option<VectorSize>, bool),
     Clamped(VectorSize),
-    /// An operand of an operator, around which each writer puts parentheses.
-    Enclosed,
+    /// An operand of an operator beside this zero, around which each writer puts parentheses.
+    Enclosed(Literal),
     /// A shift whose right side has this size, and keeps the bits of this number.
     Masked(Option<VectorSize>, u32),
     /// A member that becomes a vector of numbers of this kind and width, which it is already.
@@ -112,10 +116,32 @@ fn forms(
     if needs.unpacked_choices {
         found.extend(chosen_members(module, function, info));
     }
+    if needs.enclosed_subtrahends {
+        found.extend(subtrahends(function, &function.body));
+    }
     for (handle, _) in function.expressions.iter() {
         found.extend(own_form(module, (function, info), handle, needs).map(|form| (handle, form)));
     }
     found
+}
+
+/// The values below zero, or negated ones, that atomic functions subtract.
+fn subtrahends(function: &Function, block: &Block) -> BTreeMap<Value, Form> {
+    let own = block.iter().filter_map(|statement| {
+        let Statement::Atomic { pointer: _, fun: AtomicFunction::Subtract, value, result: _ } =
+            statement
+        else {
+            return None;
+        };
+        match function.expressions[*value] {
+            Expression::Literal(Literal::I32(number)) if number < 0 => Some(*value),
+            Expression::Unary { op: UnaryOperator::Negate, expr: _ } => Some(*value),
+            _ => None,
+        }
+    });
+    let own = own.map(|value| (value, Form::Enclosed(Literal::I32(0))));
+    let inner = block.iter().flat_map(inner_blocks);
+    own.chain(inner.flat_map(|block| subtrahends(function, block))).collect()
 }
 
 /// The form that an expression needs for what it is itself.
@@ -163,7 +189,7 @@ fn own_form(
         Expression::Math { fun: MathFunction::Pack4xU8 | MathFunction::Pack4xU8Clamp, .. }
             if needs.enclosed_bytes =>
         {
-            Some(Form::Enclosed)
+            Some(Form::Enclosed(Literal::U32(0)))
         }
         _ => None,
     }
@@ -345,9 +371,8 @@ impl Maker<'_> {
                 let (fun, arg1) = (MathFunction::Max, Some(least));
                 self.add(Expression::Math { fun, arg: value, arg1, arg2: None, arg3: None })
             }
-            (Form::Enclosed, expression) => {
-                let (left, right) =
-                    (self.add(expression), self.add(Expression::Literal(Literal::U32(0))));
+            (Form::Enclosed(zero), expression) => {
+                let (left, right) = (self.add(expression), self.add(Expression::Literal(zero)));
                 self.both(BinaryOperator::InclusiveOr, left, right)
             }
             (Form::Unpacked(kind, width), expression) => {

@@ -14,21 +14,50 @@ use super::syntax::{DeclarationKind, ExprId, ExprKind, LocalId, StatementKind, T
 pub fn with_variables(text: &str) -> Option<String> {
     let (tree, _) = parse::parse(text)?.ok()?;
     let module = Module::read(&tree);
-    let (mut made, mut found) = (text.to_owned(), Vec::new());
+    let (mut made, mut found, mut changed) = (text.to_owned(), Vec::new(), Vec::new());
     for function in &tree.functions {
-        each_statement(&function.body, &mut |statement| {
-            let StatementKind::Declare(local, declaration) = &statement.kind else { return };
-            let is_let = declaration.kind == DeclarationKind::Let;
-            let is_such = |value: ExprId| is_of_constants(&tree, &module, &found, value);
-            let start = statement.place.start as usize;
-            if is_let && declaration.value.is_some_and(is_such) && text[start..].starts_with("let")
+        each_statement(&function.body, &mut |statement| match &statement.kind {
+            StatementKind::Declare(local, declaration)
+                if declaration.kind == DeclarationKind::Let =>
             {
-                made.replace_range(start..start + 3, "var");
-                found.push(*local);
+                let is_such = |value: ExprId| is_of_constants(&tree, &module, &found, value);
+                let start = statement.place.start as usize;
+                let is_such = declaration.value.is_some_and(is_such);
+                if is_such && text[start..].starts_with("let") {
+                    made.replace_range(start..start + 3, "var");
+                    found.push(*local);
+                }
             }
+            StatementKind::Assign { target: Some(target), operator: _, value: _ }
+            | StatementKind::Count { target } => changed.extend(root(&tree, *target)),
+            _ => {}
         });
     }
-    (!found.is_empty()).then_some(made)
+    let pointed = tree.expressions.iter().filter_map(|expression| match expression.kind {
+        ExprKind::AddressOf(inner) => root(&tree, inner),
+        _ => None,
+    });
+    changed.extend(pointed);
+    // What changes a `let` is wrong, and has to stay so.
+    let is_right = !found.is_empty() && !changed.iter().any(|local| found.contains(local));
+    is_right.then_some(made)
+}
+
+/// The local that an expression is, or is a part of.
+fn root(tree: &Tree<'_>, id: ExprId) -> Option<LocalId> {
+    match tree.kind(id) {
+        ExprKind::Name { name: _, template: _, local } => *local,
+        ExprKind::Member { base, name: _ } | ExprKind::Index { base, index: _ } => {
+            root(tree, *base)
+        }
+        ExprKind::Parenthesized(inner)
+        | ExprKind::AddressOf(inner)
+        | ExprKind::Indirection(inner) => root(tree, *inner),
+        ExprKind::Literal(_)
+        | ExprKind::Call { .. }
+        | ExprKind::Unary { .. }
+        | ExprKind::Binary { .. } => None,
+    }
 }
 
 /// Whether a value is made of constants, and of locals that are known to be.
@@ -90,6 +119,20 @@ mod tests {
             assert_eq!(variables(body), "", "{body}");
         }
         assert_eq!(variables("let a = &p; let b = *a; let d = t; const e = 1;"), "");
+    }
+
+    #[test]
+    fn what_must_not_change_stays() {
+        for body in [
+            "let a = 1; a = 2;",
+            "let a = 1; (a) += 2;",
+            "for (let a = 0; a < 4; a++) {}",
+            "let a = vec2(1); a.x = 2;",
+            "let a = array(1, 2); let p = &a[1];",
+            "let a = 1; g(*&a);",
+        ] {
+            assert_eq!(variables(body), "", "{body}");
+        }
     }
 
     #[test]

@@ -9,6 +9,7 @@ use crate::nesting::nesting_lack;
 use crate::slots::{Numbering, native_reflection};
 use crate::text::BoundedText;
 use crate::plain::{self, Needs};
+use crate::results;
 use crate::{
     EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, extensions, filters, lets, sized,
     specialise, unused,
@@ -43,6 +44,8 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     }
     let with_variables = lets::with_variables(source.module, source.info)?;
     let source = &source.with_analysed(with_variables.as_ref());
+    let named = results::with_named_results(source.module, source.info)?;
+    let source = &source.with_analysed(named.as_ref());
     // WGSL counts these modulo the bits. wgpu, which may read the text, does not.
     let needs = Needs { masked_shifts: true, ..Needs::default() };
     let plain = plain::with_plain_forms(source.module, source.info, needs)?;

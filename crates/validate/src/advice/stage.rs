@@ -191,11 +191,14 @@ pub fn advise_variable(text: &str, name: &str, wrong: &Variable, mistake: &mut M
             mistake.write(format!("var<private> {name}{of}{value};"));
         }
         Variable::Strided => {
-            let inner = of_type.strip_prefix("array<").unwrap_or_default();
-            let length = inner.trim_end_matches('>').rsplit(',').next().unwrap_or("N").trim();
+            let length = of_type.strip_prefix("array<").and_then(|inner| inner.rsplit(',').next());
+            let length = length.map(|length| length.trim_end_matches('>').trim());
+            let what = match length.filter(|length| !length.is_empty()) {
+                Some(length) => format!("write `array<vec4f, {length}>` and read `{name}[i].x`"),
+                None => "make them `vec4f`".to_owned(),
+            };
             mistake.help(format!(
-                "elements of a uniform array are 16 bytes apart: write `array<vec4f, {length}>` and \
-                 read `{name}[i].x`, or `var<storage>`"
+                "elements of a uniform array are 16 bytes apart: {what}, or `var<storage>`"
             ));
         }
         Variable::Boolean => boolean(&source, lookup, &declared, of_type, mistake),
