@@ -112,13 +112,16 @@ enum Command {
 impl Command {
     /// The executors that the command names.
     fn executors(&self) -> Vec<&'static executors::ExecutorEntry> {
-        let names = match self {
-            Self::Check(arguments) => arguments.executor.as_slice(),
-            Self::Eval(arguments) => std::slice::from_ref(&arguments.executor),
-            Self::Render(arguments) => arguments.executor.as_slice(),
-            _ => &[],
+        let names: Vec<&str> = match self {
+            Self::Check(arguments) => arguments.executor.iter().map(String::as_str).collect(),
+            Self::Eval(arguments) => vec![&arguments.executor],
+            // A shader of one's own is drawn there if there is a driver.
+            Self::Render(arguments) => {
+                vec![arguments.executor.as_deref().unwrap_or(render::EXECUTOR)]
+            }
+            _ => Vec::new(),
         };
-        names.iter().filter_map(|name| executors::find_executor(name)).collect()
+        names.into_iter().filter_map(executors::find_executor).collect()
     }
 
     /// The GPUs that the command names. They are opened here, before other threads have work.

@@ -337,8 +337,8 @@ fn all_programs() -> Outcome {
     Ok(())
 }
 
-/// Without a window system, checks on drivers pass and print nothing on standard error. Mesa's
-/// layers look for Wayland, and would print errors of their own.
+/// Without a window system, checks on drivers pass and print nothing on standard error, and pictures are
+/// drawn without a word of it. Mesa's layers look for Wayland, and would print errors of their own.
 fn without_window() -> Outcome {
     let package = Package::new(&[
         ("half.wesl", "fn half(x: f32) -> f32 { return 0.5 * x; }\n"),
@@ -346,19 +346,22 @@ fn without_window() -> Outcome {
             "half.toml",
             "[[case]]\nfunction = \"half\"\nformula = \"0.5*x\"\ntolerance = { ulp = 1 }\ninputs = { x = [1, 2] }\n",
         ),
+        ("red.wgsl", "@fragment fn main() -> @location(0) vec4f { return vec4f(1, 0, 0, 1); }\n"),
     ])?;
-    for executor in ["vulkan", "gl"] {
-        for folder in [None, Some("")] {
-            let mut command =
-                package.command("", &format!("check half.toml --executor {executor}"));
-            command
-                .env_remove("WAYLAND_DISPLAY")
-                .env_remove("DISPLAY")
-                .env_remove("XDG_RUNTIME_DIR");
-            folder.map(|folder| command.env("XDG_RUNTIME_DIR", folder));
-            let run = Run::from(command.output()?).ends(0)?.says(&["1 of 1 pass"])?;
+    let without = |arguments: &str, folder: Option<&str>| {
+        let mut command = package.command("", arguments);
+        command.env_remove("WAYLAND_DISPLAY").env_remove("DISPLAY").env_remove("XDG_RUNTIME_DIR");
+        folder.map(|folder| command.env("XDG_RUNTIME_DIR", folder));
+        command.output()
+    };
+    for folder in [None, Some("")] {
+        for executor in ["vulkan", "gl"] {
+            let run = without(&format!("check half.toml --executor {executor}"), folder)?;
+            let run = Run::from(run).ends(0)?.says(&["1 of 1 pass"])?;
             equal(run.err.as_str(), "")?;
         }
+        let run = Run::from(without("render red.wgsl --size 8x8 --force", folder)?).ends(0)?;
+        equal(run.err.contains("XDG_RUNTIME_DIR"), false)?;
     }
     Ok(())
 }

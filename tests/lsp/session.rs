@@ -1,8 +1,10 @@
 //! The editor's side of the protocol.
 
 use std::fs;
-use std::io::BufReader;
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::io::{self, BufReader};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
 
 use lamplight::lsp::wire::{self, Incoming};
 use libtest_mimic::Failed;
@@ -46,12 +48,15 @@ TINT = { doc = "A warm colour." }
 
 pub const UTIL: &str = "/// Half of it.\nfn half(x: f32) -> f32 {\n    return x * 0.5;\n}\n";
 
+/// How long a server may say nothing. A test that waits for what never comes has to fail.
+const SILENCE: Duration = Duration::from_secs(120);
+
 /// A package on disk, and a server with one of its files open.
 pub struct Session {
     pub folder: TempDir,
     pub child: Child,
     pub to: Option<ChildStdin>,
-    from: BufReader<ChildStdout>,
+    from: Receiver<io::Result<Incoming>>,
     next: u64,
 }
 
@@ -68,7 +73,10 @@ impl Session {
             .stdout(Stdio::piped())
             .spawn()?;
         let to = child.stdin.take();
-        let from = BufReader::new(child.stdout.take().ok_or("no output")?);
+        let mut output = BufReader::new(child.stdout.take().ok_or("no output")?);
+        let (sender, from) = channel();
+        // It ends with the server, or with the session.
+        std::thread::spawn(move || while sender.send(wire::read_message(&mut output)).is_ok() {});
         let mut session = Self { folder, child, to, from, next: 0 };
         session.ask("initialize", json!({ "capabilities": {} }))?;
         session.notify("initialized", json!({}))?;
@@ -95,7 +103,8 @@ impl Session {
     }
 
     pub fn receive(&mut self) -> Result<Value, Failed> {
-        match wire::read_message(&mut self.from)? {
+        let received = self.from.recv_timeout(SILENCE);
+        match received.map_err(|error| format!("no message within {SILENCE:?}: {error}"))?? {
             Incoming::Message(message) => Ok(message),
             other => Err(format!("expected a message of the server, found {other:?}").into()),
         }

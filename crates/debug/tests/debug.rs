@@ -33,15 +33,24 @@ fn given_of(composed: &Composed, sources: SourceSet, arguments: &[f32]) -> Given
 }
 
 fn called(composed: &Composed, sources: SourceSet, call: Call) -> Given {
+    let subject = subject(composed, &sources, ("f", call), Resources::default());
+    Given { sources, subject }
+}
+
+fn subject(
+    composed: &Composed,
+    sources: &SourceSet,
+    (function, call): (&str, Call),
+    resources: Resources,
+) -> Subject {
     let validated = validate(composed).unwrap();
     let text = SubjectText {
         module: &validated.module,
         text: &composed.text,
         map: &composed.map,
-        sources: &sources,
+        sources,
     };
-    let subject = Subject::new(text, "f", call, Resources::default()).unwrap();
-    Given { sources, subject }
+    Subject::new(text, function, call, resources).unwrap()
 }
 
 fn given(text: &str, arguments: &[f32]) -> Given {
@@ -377,15 +386,8 @@ void main() {
 ";
     let (composed, sources) = composed("own.frag", text, Language::Glsl);
     let composed = glsl_as_wgsl(&composed, Default::default()).unwrap();
-    let validated = validate(&composed).unwrap();
-    let text = SubjectText {
-        module: &validated.module,
-        text: &composed.text,
-        map: &composed.map,
-        sources: &sources,
-    };
     let call = Call::Alone(vec![0.5, 0.0, 0.0]);
-    let subject = Subject::new(text, "main", call, Resources::default()).unwrap();
+    let subject = subject(&composed, &sources, ("main", call), Resources::default());
     let mut replay = Replay::new(subject, 0.5).unwrap();
     let mut expressions = lamplight_debug::Expressions::default();
     let mut found = Vec::new();
@@ -415,17 +417,10 @@ fn f(x: f32) -> f32 {
 }
 ";
     let (composed, sources) = composed("own.wesl", text, Language::Wesl);
-    let validated = validate(&composed).unwrap();
-    let text = SubjectText {
-        module: &validated.module,
-        text: &composed.text,
-        map: &composed.map,
-        sources: &sources,
-    };
     let mut resources = Resources::default();
     let bytes = [1.0_f32, 2.0, 3.0].iter().flat_map(|one| one.to_le_bytes()).collect();
     resources.buffers.insert((0, 0), bytes);
-    let subject = Subject::new(text, "f", Call::Alone(vec![9.0]), resources).unwrap();
+    let subject = subject(&composed, &sources, ("f", Call::Alone(vec![9.0])), resources);
     let mut replay = Replay::new(subject, 0.5).unwrap();
     let mut expressions = lamplight_debug::Expressions::default();
     let mut found = Vec::new();

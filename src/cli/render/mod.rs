@@ -180,7 +180,7 @@ impl Arguments {
 }
 
 /// The executor that draws where nothing else is asked for.
-const EXECUTOR: &str = "vulkan";
+pub const EXECUTOR: &str = "vulkan";
 
 fn chosen_executor(arguments: &Arguments) -> Result<&'static ExecutorEntry, Failure> {
     executor::find_drawing(arguments.executor.as_deref().unwrap_or(EXECUTOR))
