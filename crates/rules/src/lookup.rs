@@ -99,6 +99,28 @@ impl<'t> Lookup<'t> {
         calls.filter(|(place, ..)| self.tree.enclosing(*place).is_some()).collect()
     }
 
+    /// The expressions with an operator between two within a place: their own places, and those of
+    /// their sides.
+    pub fn operations(&self, operator: &str, within: &Range<usize>) -> Vec<[Place; 3]> {
+        let found = self.tree.expressions.iter().filter_map(|one| match one.kind {
+            ExprKind::Binary { operator: found, left, right } if found == operator => {
+                Some([one.place, self.tree.place(left), self.tree.place(right)])
+            }
+            _ => None,
+        });
+        let is_within =
+            |place: Place| within.start as u32 <= place.start && place.end <= within.end as u32;
+        found.filter(|[place, ..]| is_within(*place)).collect()
+    }
+
+    /// The name of the first structure with members of these names, and of no others.
+    pub fn structure_of(&self, members: &[&str]) -> Option<&'t str> {
+        let has_them = |one: &&super::syntax::Struct<'t>| {
+            one.members.iter().map(|member| member.name).eq(members.iter().copied())
+        };
+        self.tree.structs.iter().find(has_them).map(|one| one.name)
+    }
+
     /// The heads of all functions.
     pub fn heads(&self) -> Vec<Head<'t>> {
         self.tree.functions.iter().map(|function| self.head_of(function)).collect()

@@ -25,7 +25,9 @@ use lamplight_syntax::words::is_word;
 pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
     let message = match error.message() {
         // What follows are types as naga writes them for its developers.
-        message if message.starts_with(OPERANDS) => "these operands do not go together".to_owned(),
+        message if message.starts_with(advice::OPERANDS) => {
+            "these operands do not go together".to_owned()
+        }
         message => as_sentence(message),
     };
     let labels =
@@ -41,7 +43,12 @@ pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
     if diagnostic.labels.is_empty() {
         let message = |text: &str| Some(parse_wgsl(text).err()?.message().to_owned());
         if let Some(range) = place_of_error(&composed.text, &message) {
-            diagnostic = label_or_note(diagnostic, composed, Some(range), "in this part");
+            let compared =
+                advice::advise_compared(&composed.text, error.message(), &range, &message);
+            diagnostic = match compared {
+                Some(compared) => mistaken(composed, codes::WGSL_ERROR, compared),
+                None => label_or_note(diagnostic, composed, Some(range), "in this part"),
+            };
         }
     }
     if let Some(name) = quoted_after(UNKNOWN, &message) {
@@ -127,9 +134,6 @@ fn advised(
     }
     diagnostic
 }
-
-/// How naga's sentence begins before the types of operands.
-const OPERANDS: &str = "Incompatible operands";
 
 /// How naga's sentences begin before a name that nothing declares.
 const UNKNOWN: &[&str] =

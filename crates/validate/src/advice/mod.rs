@@ -3,6 +3,7 @@
 //! naga names types and places. The lines that help an author are found here: the value with its
 //! conversion, the call with the argument that is missing.
 
+mod compare;
 pub mod convert;
 mod glsl;
 mod names;
@@ -11,6 +12,7 @@ mod stage;
 mod tokens;
 mod typed;
 
+pub use compare::{OPERANDS, advise_compared};
 pub use glsl::{advise_glsl, note_unknown_glsl};
 pub use names::note_unknown;
 pub use parser::advise_parsed;
