@@ -271,7 +271,10 @@ fn repeated_offsets(function: &Function, needs: Needs) -> BTreeMap<Value, Form> 
 
 /// The module with shifts by less than the bits of a number, for those who give a module of naga to wgpu;
 /// `None` where it has no others. naga writes SPIR-V in which those are open.
-pub fn with_masked_shifts(module: &Module) -> Option<Module> {
+///
+/// # Errors
+/// The message of naga, if it refuses the module.
+pub fn with_masked_shifts(module: &Module) -> Result<Option<Module>, String> {
     let functions = module.functions.iter().map(|(_, function)| function);
     let all = functions.chain(module.entry_points.iter().map(|point| &point.function));
     let is_shift = |expression: &Expression| {
@@ -280,11 +283,11 @@ pub fn with_masked_shifts(module: &Module) -> Option<Module> {
     };
     let mut expressions = all.flat_map(|function| function.expressions.iter());
     if !expressions.any(|(_, expression)| is_shift(expression)) {
-        return None;
+        return Ok(None);
     }
-    let info = info_unchecked(module).ok()?;
+    let info = info_unchecked(module).map_err(|error| error.to_string())?;
     let needs = Needs { masked_shifts: true, ..Needs::default() };
-    with_plain_forms(module, &info, needs).ok()?.map(|(module, _)| module)
+    Ok(with_plain_forms(module, &info, needs)?.map(|(module, _)| module))
 }
 
 /// Whether a divisor is a number other than 0 and -1.

@@ -100,16 +100,13 @@ fn put_into(block: &mut Block, expressions: &mut Arena<Expression>, stored: Stor
         if let Statement::Store { pointer, value } = &mut statement
             && let Some(ty) = stored(expressions, *pointer, *value)
         {
-            let first = expressions.len();
             let base = *value;
-            let components = [0, 1]
-                .map(|index| expressions.append(Expression::AccessIndex { base, index }, span));
-            let components = components.to_vec();
+            let mut part =
+                |index| expressions.append(Expression::AccessIndex { base, index }, span);
+            let components = vec![part(0), part(1)];
+            let first = components[0];
             *value = expressions.append(Expression::Compose { ty, components }, span);
-            let added = Range::new_from_bounds(
-                expressions.iter().nth(first).map_or(base, |(handle, _)| handle),
-                *value,
-            );
+            let added = Range::new_from_bounds(first, *value);
             block.push(Statement::Emit(added), span);
         }
         inner_blocks_mut(&mut statement)

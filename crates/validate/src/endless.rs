@@ -24,14 +24,16 @@ fn return_value(function: &mut Function) {
     places.into_iter().for_each(|place| *place = Some(value));
 }
 
-/// The values of the statements that naga added behind loops without an exit.
+/// The values of the statements that naga added behind loops without an exit. Those that an author wrote
+/// have a place in the text, and are wrong without a value.
 fn ends(block: &mut Block) -> Vec<&mut Option<naga::Handle<Expression>>> {
-    let is_added = match &**block {
+    let statements: Vec<_> = block.span_iter().collect();
+    let is_added = match statements.as_slice() {
         [
             ..,
-            Statement::Loop { body, continuing, break_if: None },
-            Statement::Return { value: None },
-        ] => !has_break(body) && !has_break(continuing),
+            (Statement::Loop { body, continuing, break_if: None }, _),
+            (Statement::Return { value: None }, span),
+        ] => !span.is_defined() && !has_break(body) && !has_break(continuing),
         _ => false,
     };
     match block.last_mut() {
@@ -93,6 +95,7 @@ mod tests {
             "for (; i < 4; i++) { return 1; }",
             "if x > 0 { loop { if i > 4 { return i; } i += 1; } }",
             "loop { if i > 4 { return i; } i += 1; } i = 3;",
+            "loop { if i > 4 { return i; } i += 1; } return;",
         ] {
             assert!(!is_valid(body), "{body}");
         }

@@ -56,8 +56,11 @@ impl WgpuDevice {
         used: BTreeSet<BindingPlace>,
         as_storage: &BTreeSet<BindingPlace>,
     ) -> Result<Vec<Pending>, Diagnostic> {
-        let vertex = (self.shader(drawing.vertex, as_storage), drawing.vertex.entry);
-        let fragment = drawing.fragment.map(|stage| (self.shader(stage, as_storage), stage.entry));
+        let vertex = (self.shader(drawing.vertex, as_storage)?, drawing.vertex.entry);
+        let fragment = match drawing.fragment {
+            Some(stage) => Some((self.shader(stage, as_storage)?, stage.entry)),
+            None => None,
+        };
         let stages = StageModules {
             vertex: (&vertex.0, vertex.1),
             fragment: fragment.as_ref().map(|(module, entry)| (module, *entry)),
@@ -84,11 +87,12 @@ impl WgpuDevice {
         &self,
         stage: EntryPoint<'_>,
         as_storage: &BTreeSet<BindingPlace>,
-    ) -> wgpu::ShaderModule {
+    ) -> Result<wgpu::ShaderModule, Diagnostic> {
         let module = storage_blocks(stage.module, as_storage);
-        let module = lamplight_emit::with_masked_shifts(&module).unwrap_or(module);
-        let source = wgpu::ShaderSource::Naga(Cow::Owned(module));
-        self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
+        let masked = lamplight_emit::with_masked_shifts(&module).map_err(executor_failed)?;
+        let source = wgpu::ShaderSource::Naga(Cow::Owned(masked.unwrap_or(module)));
+        let descriptor = wgpu::ShaderModuleDescriptor { label: None, source };
+        Ok(self.device.create_shader_module(descriptor))
     }
 
     /// Makes the pipeline. Without `layout`, wgpu derives the layout from what the stages use.

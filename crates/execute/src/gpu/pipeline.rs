@@ -37,7 +37,7 @@ impl PreparedKernel {
         let fragment = match emitted {
             Some(emitted) => emitted.module(device, &kernel.name),
             None => {
-                let masked = lamplight_emit::with_masked_shifts(&kernel.module);
+                let masked = lamplight_emit::with_masked_shifts(&kernel.module)?;
                 let module = masked.unwrap_or_else(|| kernel.module.clone());
                 let source = wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module));
                 device.create_shader_module(wgpu::ShaderModuleDescriptor {
