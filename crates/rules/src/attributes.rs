@@ -8,13 +8,13 @@ use super::syntax::{
 use super::{Problem, Rule};
 
 pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
-    let mut problems = Vec::new();
+    let (mut problems, constants) = (Vec::new(), Constants::of(module));
     for declaration in &tree.declarations {
         problems.extend(misplaced_of_declaration(declaration));
     }
     for member in tree.structs.iter().flat_map(|structure| &structure.members) {
         let arguments = member.attributes.iter().flat_map(|attribute| &attribute.arguments);
-        problems.extend(arguments.filter_map(|id| check_untyped(tree, *id)));
+        problems.extend(arguments.filter_map(|id| check_untyped(&constants, *id)));
     }
     for function in &tree.functions {
         problems.extend(misplaced_of_function(function));

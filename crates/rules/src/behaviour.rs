@@ -3,7 +3,7 @@
 
 use super::statements::inner_blocks;
 use super::syntax::{Block, Statement, StatementKind, Tree};
-use super::{Problem, Rule};
+use super::{Problem, Rule, Severity};
 
 /// A set of ways in which control flow leaves a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,7 +83,9 @@ pub fn check(tree: &Tree<'_>) -> Vec<Problem> {
         let is_value = function.result.is_some();
         if is_value && found.has(Behaviour::NEXT) {
             let message = format!("`{}` does not return a value on every path", function.name);
-            problems.push(Problem::new(Rule::Behaviour, function.place, message));
+            let problem = Problem::new(Rule::Behaviour, function.place, message);
+            // Its result is open in every language.
+            problems.push(Problem { severity: Severity::Error, ..problem });
         }
     }
     problems

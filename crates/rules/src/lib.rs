@@ -184,7 +184,7 @@ fn check_with<'s>(
     };
     let module = names::Module::read(&tree);
     problems.extend(behaviour::check(&tree));
-    problems.extend(statements::check(&tree));
+    problems.extend(statements::check(&module));
     problems.extend(attributes::check(&tree, &module));
     problems.extend(layout::check(&tree, &module));
     problems.extend(memory::check(&tree, &module));

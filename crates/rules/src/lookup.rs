@@ -321,7 +321,7 @@ fn each_within<'s, 't>(statement: &'s Statement<'t>, visit: &mut dyn FnMut(&'s S
             each_statement(accept, visit);
             reject.iter().for_each(|reject| each_within(reject, visit));
         }
-        StatementKind::Switch { selector: _, filters: _, clauses } => {
+        StatementKind::Switch { selector: _, filters: _, values: _, clauses } => {
             clauses.iter().for_each(|clause| each_statement(clause, visit));
         }
         StatementKind::Loop { body, continuing } => {

@@ -2,8 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::constants::check_untyped;
-use super::syntax::{Block, DeclarationKind, ExprKind, LocalId, Statement, StatementKind, Tree};
+use super::constants::{Constants, check_untyped};
+use super::names::Module;
+use super::syntax::{
+    Block, Declaration, DeclarationKind, ExprId, ExprKind, LocalId, Statement, StatementKind, Tree,
+};
 use super::{Place, Problem, Rule};
 
 /// The blocks right within a statement.
@@ -14,7 +17,9 @@ pub fn inner_blocks<'b, 't>(statement: &'b Statement<'t>) -> Vec<&'b Block<'t>> 
             let reject = reject.iter().flat_map(|reject| inner_blocks(reject));
             std::iter::once(accept).chain(reject).collect()
         }
-        StatementKind::Switch { selector: _, filters: _, clauses } => clauses.iter().collect(),
+        StatementKind::Switch { selector: _, filters: _, values: _, clauses } => {
+            clauses.iter().collect()
+        }
         StatementKind::Loop { body, continuing } => {
             std::iter::once(body).chain(continuing).collect()
         }
@@ -34,29 +39,55 @@ pub fn inner_blocks<'b, 't>(statement: &'b Statement<'t>) -> Vec<&'b Block<'t>> 
     }
 }
 
-/// Loops with a `continue` past a declaration that their `continuing` block uses, and variables
-/// whose values do not fit.
-pub fn check(tree: &Tree<'_>) -> Vec<Problem> {
-    let mut problems = Vec::new();
-    for function in &tree.functions {
-        check_block(tree, &function.body, &mut problems);
+/// Loops with a `continue` past a declaration that their `continuing` block uses, variables whose values
+/// do not fit, and cases whose values are not constant.
+pub fn check(module: &Module<'_, '_>) -> Vec<Problem> {
+    let constants = Constants::of(module);
+    let own = module.tree.declarations.iter();
+    let mut problems: Vec<Problem> = own.filter_map(|own| check_type(&constants, own)).collect();
+    for function in &module.tree.functions {
+        check_block(&constants, &function.body, &mut problems);
     }
     problems
 }
 
-fn check_block(tree: &Tree<'_>, block: &Block<'_>, problems: &mut Vec<Problem>) {
+/// The value of something that gets its type from it.
+fn check_type(constants: &Constants<'_, '_, '_>, own: &Declaration<'_>) -> Option<Problem> {
+    let gets_type = own.kind != DeclarationKind::Const && own.of_type.is_none();
+    own.value.filter(|_| gets_type).and_then(|value| check_untyped(constants, value))
+}
+
+fn check_block(constants: &Constants<'_, '_, '_>, block: &Block<'_>, problems: &mut Vec<Problem>) {
+    let tree = constants.module.tree;
     for statement in &block.statements {
         if let StatementKind::Loop { body, continuing: Some(continuing) } = &statement.kind {
             problems.extend(passed_declaration(tree, body, continuing));
         }
-        if let StatementKind::Declare(_, own) = &statement.kind
-            && own.kind != DeclarationKind::Const
-            && own.of_type.is_none()
+        if let StatementKind::Switch { selector: _, filters: _, values, clauses: _ } =
+            &statement.kind
         {
-            problems.extend(own.value.and_then(|value| check_untyped(tree, value)));
+            problems.extend(values.iter().filter_map(|value| computed_case(tree, *value)));
         }
-        inner_blocks(statement).into_iter().for_each(|inner| check_block(tree, inner, problems));
+        if let StatementKind::Declare(_, own) = &statement.kind {
+            problems.extend(check_type(constants, own));
+        }
+        inner_blocks(statement)
+            .into_iter()
+            .for_each(|inner| check_block(constants, inner, problems));
     }
+}
+
+/// A case whose value names something that has its value only as the shader runs. naga takes a `let` for
+/// a constant.
+fn computed_case(tree: &Tree<'_>, value: ExprId) -> Option<Problem> {
+    tree.within(tree.place(value)).find_map(|one| {
+        let ExprKind::Name { name, template: _, local: Some(local) } = &one.kind else {
+            return None;
+        };
+        let message = format!("`{name}` is no constant, and the value of a `case` has to be one");
+        let is_computed = tree.locals[*local as usize].constant.is_none();
+        is_computed.then(|| Problem::new(Rule::Constant, one.place, message))
+    })
 }
 
 fn passed_declaration(

@@ -114,6 +114,8 @@ pub enum StatementKind<'t> {
     Switch {
         selector: ExprId,
         filters: Vec<Filter>,
+        /// The values of its cases.
+        values: Vec<ExprId>,
         /// The bodies of its cases.
         clauses: Vec<Block<'t>>,
     },

@@ -10,7 +10,7 @@ pub use fold::fold;
 
 use super::names::{Module, is_of_subgroups};
 use super::syntax::{ExprId, ExprKind, Tree};
-use super::{Problem, Rule};
+use super::{Problem, Rule, Severity};
 pub use evaluate::Constants;
 pub use value::Kind;
 use value::{Shape, Value};
@@ -47,12 +47,21 @@ pub fn check(tree: &Tree<'_>, module: &Module<'_, '_>) -> Vec<Problem> {
     problems
 }
 
-/// A whole number without a suffix where it becomes an `i32` that it does not fit.
-pub fn check_untyped(tree: &Tree<'_>, id: ExprId) -> Option<Problem> {
-    let ExprKind::Literal(text) = tree.kind(tree.inner(id)) else { return None };
-    let is_whole = text.parse::<u64>().is_ok_and(|value| value > i32::MAX as u64);
-    let message = format!("{text} does not fit `i32`, the type that it gets here");
-    is_whole.then(|| Problem::new(Rule::Constant, tree.place(id), message))
+/// A whole number without a type where it becomes an `i32` that it does not fit. naga makes a float of it,
+/// so this is wrong for every target.
+pub fn check_untyped(constants: &Constants<'_, '_, '_>, id: ExprId) -> Option<Problem> {
+    let tree = constants.module.tree;
+    let is_beyond = match tree.kind(tree.inner(id)) {
+        // It may have more digits than a value keeps.
+        ExprKind::Literal(text) => text.parse::<u64>().is_ok_and(|value| value > i32::MAX as u64),
+        _ => constants.value(id).is_some_and(|value| {
+            let fits = |part: &f64| (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(part);
+            value.kind == Kind::AbstractInt && !value.parts.iter().all(fits)
+        }),
+    };
+    let message = "this does not fit `i32`, the type that it gets here".to_owned();
+    let problem = Problem::new(Rule::Constant, tree.place(id), message);
+    is_beyond.then_some(Problem { severity: Severity::Error, ..problem })
 }
 
 /// Why operands do not go together. naga finds it, but for those that it never computes: the right

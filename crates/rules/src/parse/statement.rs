@@ -3,7 +3,7 @@
 use super::{Kind, Parsed, Parser};
 use crate::behaviour::{Behaviour, of_block, of_conditional_loop, of_loop, of_switch};
 use crate::syntax::{
-    Block, Declaration, DeclarationKind, ExprKind, ForLoop, Local, Statement, StatementKind,
+    Block, Declaration, DeclarationKind, ExprId, ExprKind, ForLoop, Local, Statement, StatementKind,
 };
 use crate::{Place, Problem, Rule};
 
@@ -186,21 +186,21 @@ impl<'t> Parser<'t> {
         let selector = self.expression()?;
         let (_, filters) = self.attributes()?;
         self.expect("{")?;
-        let mut clauses = Vec::new();
+        let (mut values, mut clauses) = (Vec::new(), Vec::new());
         while !self.is("}") {
-            clauses.push(self.clause()?);
+            clauses.push(self.clause(&mut values)?);
         }
         self.expect("}")?;
         let behaviour = of_switch(&clauses);
-        Ok((StatementKind::Switch { selector, filters, clauses }, behaviour))
+        Ok((StatementKind::Switch { selector, filters, values, clauses }, behaviour))
     }
 
-    fn clause(&mut self) -> Parsed<Block<'t>> {
+    fn clause(&mut self, values: &mut Vec<ExprId>) -> Parsed<Block<'t>> {
         if !self.take("default") {
             self.expect("case")?;
             while !self.is(":") && !self.is("{") && !self.is("@") {
                 if !self.take("default") {
-                    self.expression()?;
+                    values.push(self.expression()?);
                 }
                 if !self.take(",") {
                     break;

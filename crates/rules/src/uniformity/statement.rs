@@ -48,7 +48,7 @@ impl<'t> Walk<'_, 't> {
             StatementKind::If { condition, accept, reject } => {
                 self.conditional(flow, statement, *condition, (accept, reject.as_deref()))
             }
-            StatementKind::Switch { selector, filters, clauses } => {
+            StatementKind::Switch { selector, filters, values: _, clauses } => {
                 self.switch(flow, statement, *selector, (filters, clauses))
             }
             StatementKind::Loop { body, continuing } => {
