@@ -239,7 +239,7 @@ fn permutation(graph: &Graph, program: &Program, point: &Assignment) -> Result<u
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
         .validate(&module)
         .map_err(|error| error.to_string())?;
-    let validated = Validated { language: composed.language, module, info, portable: true };
+    let validated = Validated { module, info, portable: true };
     let entries = validated.module.entry_points.iter();
     let outputs = entries
         .flat_map(|entry| program.targets.iter().map(|target| (entry.name.as_str(), *target)));

@@ -16,7 +16,7 @@ use crate::bundle::{Language, SourceClip};
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostics, codes};
 use crate::generate::add_numbers;
-use crate::glsl::wgsl::{Clip, Written};
+use crate::glsl::wgsl::{Clip, Options, Written};
 use crate::source::{SourceId, SourceSet};
 use crate::validate::{glsl_as_wgsl, on_large_stack, positions_of, translate_glsl};
 
@@ -92,7 +92,7 @@ fn as_wgsl(composed: &Composed, clip: Clip) -> Result<Result<String, Diagnostics
             "only GLSL is translated to WGSL; `lamplight compose` prints WESL as WGSL",
         ));
     };
-    match translate_glsl(composed, stage, clip) {
+    match translate_glsl(composed, stage, Options { clip, filter: true }) {
         Ok(written) => {
             check_written(&written.text)?;
             Ok(Ok(with_notes(&written)))

@@ -15,7 +15,6 @@ use std::sync::{PoisonError, RwLock};
 
 use rustc_hash::FxHashMap;
 
-use super::members::rename_like_members;
 use super::{Composed, Part, PartKind, SourceMap};
 use lamplight_bundle::Language;
 use lamplight_syntax::wesl::blank::{comment_length, is_blank};
@@ -82,7 +81,7 @@ impl Leaner {
         }
         drop(known);
         self.remember(new, &text);
-        rename_like_members(Composed {
+        Composed {
             text,
             map: SourceMap::default(),
             parts,
@@ -90,7 +89,7 @@ impl Leaner {
             warnings: Vec::new(),
             decisions: Vec::new(),
             ..*composed
-        })
+        }
     }
 
     /// Remembers the lean forms of parts, which are ranges of a text.

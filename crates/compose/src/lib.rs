@@ -3,8 +3,8 @@
 
 pub mod glsl;
 pub mod lean;
-mod members;
 mod part;
+mod plain;
 pub mod project;
 pub mod resolve;
 mod source_map;
@@ -12,6 +12,7 @@ pub mod wesl;
 
 pub use lean::{Leaner, lean, lean_glsl};
 pub use part::{Part, PartKind};
+pub use plain::parts_of_wgsl;
 pub use source_map::{Segment, SourceMap};
 
 use std::ops::Range;

@@ -28,7 +28,7 @@ use rayon::prelude::*;
 
 use device::Device;
 use gpu::Gpu;
-use lamplight_bundle::{Conventions, Language, Stage};
+use lamplight_bundle::{Conventions, Stage};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_execute::kernel::{ENTRY, varying_modules};
 use lamplight_generate::cache::Cache;
@@ -89,7 +89,7 @@ pub fn function_subject(
 
 fn stage_alone(module: naga::Module, conventions: Conventions) -> Result<Pipeline, String> {
     let info = info_of(&module).map_err(|error| error.to_string())?;
-    let validated = Validated { language: Language::Wesl, module, info, portable: true };
+    let validated = Validated { module, info, portable: true };
     Pipeline::new(ReflectedStage::of_module(&validated, ENTRY, conventions)?, None)
 }
 

@@ -5,9 +5,7 @@ use std::ffi::CString;
 
 use naga::ScalarKind;
 
-use lamplight_bundle::{
-    Binding, BindingKind, Conventions, Language, Reflection, Stage, Target, Varying,
-};
+use lamplight_bundle::{Binding, BindingKind, Conventions, Reflection, Stage, Target, Varying};
 use lamplight_diagnostic::Diagnostic;
 use lamplight_emit as emit;
 use lamplight_emit::spirv;
@@ -193,7 +191,7 @@ fn partner_stage(text: &str) -> Result<ReflectedStage, String> {
     let with_context = |error: &dyn std::fmt::Display| format!("the stage added to it: {error}");
     let module = naga::front::wgsl::parse_str(text).map_err(|error| with_context(&error))?;
     let info = info_of(&module).map_err(|error| with_context(&error))?;
-    let validated = Validated { language: Language::Wesl, module, info, portable: true };
+    let validated = Validated { module, info, portable: true };
     ReflectedStage::of_module(&validated, PARTNER, Conventions::default())
 }
 

@@ -26,7 +26,7 @@ pub fn keep_entry(validated: &Validated, index: usize) -> Result<Validated, Diag
         let message = format!("a compacted module is not valid: {error}");
         Diagnostic::error(codes::NAGA_INTERNAL, message)
     })?;
-    Ok(Validated { language: validated.language, module, info, portable: validated.portable })
+    Ok(Validated { module, info, portable: validated.portable })
 }
 
 /// The module of one entry point, in which every override is a constant: its default.
@@ -41,8 +41,7 @@ pub fn with_defaults(
     let info = info_unchecked(module).map_err(|error| {
         Diagnostic::error(codes::NAGA_INTERNAL, format!("the module is not valid: {error}"))
     })?;
-    let language = lamplight_bundle::Language::Wesl;
-    let validated = Validated { language, module: module.clone(), info, portable: false };
+    let validated = Validated { module: module.clone(), info, portable: false };
     let index = super::find_target(&validated, entry)?;
     super::specialise::with_defaults(&validated, index)
 }

@@ -12,8 +12,8 @@ use naga::{
     TypeInner, VectorSize,
 };
 
-use super::{columns, depths, immediates, located, strides, targets};
-use lamplight_bundle::{Language, Target};
+use super::{columns, depths, immediates, located, targets};
+use lamplight_bundle::Target;
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_validate::{
@@ -155,7 +155,7 @@ const SINGLE: &[MathFunction] = &[
 
 /// The error about a function of 64-bit numbers that no target has.
 fn doubled(composed: &Composed, validated: &Validated) -> Option<Diagnostic> {
-    let Validated { language: _, module, info, portable: _ } = validated;
+    let Validated { module, info, portable: _ } = validated;
     let functions = module.functions.iter().map(|(handle, function)| (&info[handle], function));
     let points = module.entry_points.iter().enumerate();
     let points = points.map(|(index, point)| (info.get_entry_point(index), &point.function));
@@ -196,13 +196,6 @@ pub fn check_lacks(
     }
     for (message, span) in lacking_immediates(module, wanted) {
         refuse(message, span, "these immediates");
-    }
-    if validated.language == Language::Glsl {
-        for (target, span) in wanted.iter().flat_map(|target| {
-            strides::wide_arrays(module, *target).into_iter().map(move |span| (target, span))
-        }) {
-            refuse(format!("target `{target}`: {}", strides::WIDE), span, "it is in here");
-        }
     }
     if wanted.contains(&Target::HLSL) {
         for (reason, span, label) in lost_in_hlsl(validated) {

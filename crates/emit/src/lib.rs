@@ -48,7 +48,6 @@ mod sized;
 mod slots;
 mod specialise;
 pub mod spirv;
-mod strides;
 mod text;
 mod unused;
 mod workgroups;
@@ -69,7 +68,7 @@ use naga::back::glsl::Version;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::valid::Capabilities;
 
-use lamplight_bundle::{self as bundle, BoundsChecks, Conventions, Language, Native, Target};
+use lamplight_bundle::{self as bundle, BoundsChecks, Conventions, Native, Target};
 use lamplight_compose::{Composed, Part, PartKind};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_validate::{Validated, guard, on_large_stack};
@@ -265,11 +264,6 @@ fn written_plainly(
         if help.is_empty() { error } else { error.note(help) }
     };
     let point = &validated.module.entry_points[index];
-    // WGSL's own layouts are those of its writers.
-    let is_glsl = validated.language == Language::Glsl;
-    if is_glsl && !strides::wide_arrays(&validated.module, writer.target).is_empty() {
-        return Err(failed(strides::WIDE.to_owned()));
-    }
     let fixed = match writer.overrides {
         Overrides::Kept => None,
         _ => specialise::with_constants(validated, index)?,

@@ -4,7 +4,7 @@ use naga::Module;
 
 use crate::executor_failed;
 use crate::kernel::{ENTRY, Kernel};
-use lamplight_bundle::{Language, Native, Target};
+use lamplight_bundle::{Native, Target};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_emit::Emitted;
 use lamplight_link::{self as link, Linker};
@@ -32,8 +32,7 @@ pub fn of_module(
 ) -> Result<(Emitted, Validated), Diagnostic> {
     let info = info_of(module)
         .map_err(|error| executor_failed(format!("the module is not valid: {error}")))?;
-    let validated =
-        Validated { language: Language::Wesl, module: module.clone(), info, portable: true };
+    let validated = Validated { module: module.clone(), info, portable: true };
     match link::module_linked(&validated, entry, target, linker) {
         Ok(artifact) => {
             let (bytes, native) = (artifact.bytes.to_vec(), Native::clone(&artifact.native));

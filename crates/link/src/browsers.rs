@@ -1,17 +1,16 @@
-//! What becomes of derivatives that WGSL's rule does not allow, but the source does: GLSL has no
-//! such rule, and naga does not read filters at statements. Then the output turns the rule off.
+//! What becomes of derivatives that filters at statements allow, which naga does not read. Then the output
+//! turns the rule off.
 
 use std::sync::Arc;
 
 use super::compile::TextForms;
-use lamplight_bundle::{Artifact, Language, Target};
-use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
+use lamplight_bundle::Artifact;
+use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_emit::without_derivative_rule;
 use lamplight_rules::{self as rules, Problem, Rule};
 use lamplight_validate::on_large_stack;
 
-/// Turns the rule off in a WGSL output that needs it, and gives the warnings for that. Warnings
-/// that the source already has are not repeated.
+/// Turns the rule off in a WGSL output that needs it.
 ///
 /// # Errors
 /// Barriers in non-uniform control flow, which no filter allows.
@@ -19,8 +18,7 @@ pub fn fit_for_browsers(
     text: &TextForms<'_>,
     entry: &str,
     artifact: &mut Artifact,
-    known: &[Diagnostic],
-) -> Result<Diagnostics, Diagnostics> {
+) -> Result<(), Diagnostics> {
     let written = String::from_utf8_lossy(&artifact.bytes).into_owned();
     let problems = on_large_stack(|| rules::check(&written));
     let errors: Vec<&Problem> =
@@ -33,21 +31,10 @@ pub fn fit_for_browsers(
         };
         return Err(vec![at_entry(text, entry, Diagnostic::error(code, message))]);
     }
-    let Some(first) = errors.first() else { return Ok(Vec::new()) };
-    artifact.bytes = Arc::from(without_derivative_rule(&written).into_bytes());
-    let is_known = known.iter().any(|one| one.code == codes::NON_UNIFORM_DERIVATIVE);
-    if is_known || text.composed.language == Language::Wesl {
-        return Ok(Vec::new());
+    if !errors.is_empty() {
+        artifact.bytes = Arc::from(without_derivative_rule(&written).into_bytes());
     }
-    let diagnostic = Diagnostic {
-        severity: Severity::Warning,
-        ..Diagnostic::error(codes::NON_UNIFORM_DERIVATIVE, first.message.clone())
-    };
-    let diagnostic = diagnostic.note(format!(
-        "the output for `{}` has `diagnostic(off, derivative_uniformity);`",
-        Target::WGSL
-    ));
-    Ok(vec![at_entry(text, entry, diagnostic)])
+    Ok(())
 }
 
 fn at_entry(text: &TextForms<'_>, entry: &str, diagnostic: Diagnostic) -> Diagnostic {

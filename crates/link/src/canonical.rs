@@ -12,15 +12,11 @@ use naga::ShaderStage;
 use super::outline::{ContentKey, Outline, hash_parts};
 use super::reason::Reason;
 use super::summary::{FunctionSummary, ResourceOrigin, TextureShape};
-use lamplight_bundle::Language;
 use lamplight_compose::PartKind;
 use lamplight_syntax::words::words;
 
 /// The name of the entry point that does nothing.
 pub const IDLE: &str = "lamplight_idle";
-
-/// The function that names GLSL's built-in variables, such as `gl_FragCoord`.
-pub const BUILT_INS: &str = "lamplight_built_ins";
 
 /// The local variable in which a stub returns its result.
 const RESULT: &str = "lamplight_result";
@@ -29,7 +25,7 @@ const RESULT: &str = "lamplight_result";
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UnitId {
     Function(usize),
-    /// The entry point; in GLSL the function that naga wraps around `main`.
+    /// The entry point.
     Entry,
 }
 
@@ -37,9 +33,8 @@ pub enum UnitId {
 #[derive(Debug)]
 pub struct Recipe<'s> {
     pub unit: UnitId,
-    /// The function that keeps its body. `None` for a GLSL entry point: there `main` is a stub, and
-    /// naga adds the function around it.
-    pub function: Option<usize>,
+    /// The function that keeps its body.
+    pub function: usize,
     /// Structures, constants and assertions, in the order of the text.
     others: Vec<usize>,
     /// Variables, sorted by name, since Metal passes them as arguments in their order.
@@ -57,22 +52,19 @@ pub fn make_recipe<'s>(
     unit: UnitId,
     summaries: &dyn Fn(usize) -> Option<&'s FunctionSummary>,
 ) -> Result<Recipe<'s>, Reason> {
-    let entry = outline.entry();
-    let (function, callees): (Option<usize>, Vec<usize>) = match (unit, outline.language) {
-        (UnitId::Entry, Language::Glsl) => (None, vec![entry]),
-        (UnitId::Entry, Language::Wesl) => (Some(entry), outline.callees(entry).collect()),
-        (UnitId::Function(function), _) => (Some(function), outline.callees(function).collect()),
+    let function = match unit {
+        UnitId::Entry => outline.entry(),
+        UnitId::Function(function) => function,
     };
     let stubs =
-        callees.into_iter().map(|callee| summaries(callee).map(|summary| (callee, summary)));
+        outline.callees(function).map(|callee| summaries(callee).map(|summary| (callee, summary)));
     let stubs: Vec<(usize, &FunctionSummary)> =
         stubs.collect::<Option<_>>().ok_or(Reason::Recursion)?;
     let mut open: Vec<usize> = Vec::new();
-    open.extend(function.iter().flat_map(|function| &outline.declarations[*function].uses));
+    open.extend(&outline.declarations[function].uses);
     for (callee, summary) in &stubs {
         open.extend(&outline.declarations[*callee].head_uses);
-        let declared = summary.globals.iter().filter(|name| !is_built_in(name));
-        for name in declared {
+        for name in &summary.globals {
             open.push(outline.find(name).ok_or(Reason::Stub)?);
         }
     }
@@ -110,11 +102,6 @@ fn named_closure(outline: &Outline<'_>, mut open: Vec<usize>) -> BTreeSet<usize>
     reached
 }
 
-/// Whether GLSL declares the variable itself.
-fn is_built_in(name: &str) -> bool {
-    name.starts_with("gl_")
-}
-
 impl Recipe<'_> {
     /// A hash of every byte of the text, and of every fact that is added to its module.
     pub fn key(&self, outline: &Outline<'_>) -> ContentKey {
@@ -124,7 +111,7 @@ impl Recipe<'_> {
             UnitId::Function(_) => "function",
         };
         let stage = if outline.stage == ShaderStage::Vertex { "vertex" } else { "fragment" };
-        let head = [unit, outline.language.name(), stage, &outline.header];
+        let head = [unit, stage, &outline.header];
         let mut parts: Vec<&[u8]> = head.map(str::as_bytes).to_vec();
         for list in [&self.others, &self.variables] {
             parts.extend(list.iter().map(declared).chain([&[][..]]));
@@ -132,15 +119,14 @@ impl Recipe<'_> {
         for (stub, summary) in &self.stubs {
             parts.extend([outline.declarations[*stub].head.as_bytes(), &summary.key]);
         }
-        for one in [&self.function, &self.interface] {
-            parts.push(one.as_ref().map_or(&[], declared));
-        }
+        parts.push(declared(&self.function));
+        parts.push(self.interface.as_ref().map_or(&[], declared));
         hash_parts(parts)
     }
 
     /// Bytes of the declarations that the text is made of.
     pub fn bytes(&self, outline: &Outline<'_>) -> usize {
-        let whole = self.others.iter().chain(&self.variables).chain(&self.function);
+        let whole = self.others.iter().chain(&self.variables).chain([&self.function]);
         let heads = self.stubs.iter().map(|(stub, _)| outline.declarations[*stub].head.len());
         whole.map(|index| outline.declarations[*index].text.len()).chain(heads).sum()
     }
@@ -148,61 +134,34 @@ impl Recipe<'_> {
     /// Writes the canonical text.
     pub fn text(&self, outline: &Outline<'_>) -> Result<String, Reason> {
         let mut text = outline.header.clone();
-        if outline.language == Language::Glsl && !text.ends_with('\n') {
-            text.push('\n');
-        }
         let declared = self.others.iter().chain(&self.variables);
         for index in declared {
             text.push_str(outline.declarations[*index].text);
             text.push('\n');
         }
-        text.push_str(&self.built_ins(outline));
         for (stub, summary) in &self.stubs {
             text.push_str(&write_stub(outline, *stub, summary)?);
         }
-        if let Some(function) = self.function {
-            text.push_str(outline.declarations[function].text);
-            text.push('\n');
-        }
+        text.push_str(outline.declarations[self.function].text);
+        text.push('\n');
         if matches!(self.unit, UnitId::Function(_)) {
             self.write_idle(outline, &mut text);
         }
         Ok(text)
     }
 
-    /// Writes a function that names this text's built-in variables of GLSL in a fixed order. They
-    /// enter a module in the order in which its text first names them, and Metal passes them along
-    /// in that order.
-    fn built_ins(&self, outline: &Outline<'_>) -> String {
-        let text = self.function.map_or("", |function| outline.declarations[function].text);
-        let named = words(text).filter(|word| word.before != b'.').map(|word| word.text);
-        let shown = self.stubs.iter().flat_map(|(_, summary)| &summary.globals);
-        let all: BTreeSet<&str> =
-            named.chain(shown.map(String::as_str)).filter(|name| is_built_in(name)).collect();
-        if outline.language != Language::Glsl || all.is_empty() {
-            return String::new();
-        }
-        let uses: String = all.into_iter().flat_map(|name| [name, ";"]).collect();
-        format!("void {BUILT_INS}(){{{uses}}}\n")
-    }
-
     fn write_idle(&self, outline: &Outline<'_>, text: &mut String) {
         let is_vertex = outline.stage == ShaderStage::Vertex;
-        let is_main = |index: usize| outline.declarations[index].name() == "main";
-        let has_main = self.function.into_iter().chain(self.stubs.iter().map(|stub| stub.0));
-        let idle = match (outline.language, self.interface) {
-            (Language::Glsl, _) if has_main.into_iter().any(is_main) => String::new(),
-            (Language::Glsl, _) if is_vertex => "void main(){gl_Position=vec4(0.0);}\n".to_owned(),
-            (Language::Glsl, _) => "void main(){}\n".to_owned(),
-            (Language::Wesl, Some(interface)) => {
+        let idle = match self.interface {
+            Some(interface) => {
                 let name = outline.declarations[interface].name();
                 let stage = if is_vertex { "vertex" } else { "fragment" };
                 format!("@{stage} fn {IDLE}()->{name}{{var {RESULT}:{name};return {RESULT};}}\n")
             }
-            (Language::Wesl, None) if is_vertex => {
+            None if is_vertex => {
                 format!("@vertex fn {IDLE}()->@builtin(position)vec4f{{return vec4f();}}\n")
             }
-            (Language::Wesl, None) => format!("@fragment fn {IDLE}(){{}}\n"),
+            None => format!("@fragment fn {IDLE}(){{}}\n"),
         };
         text.push_str(&idle);
     }
@@ -217,7 +176,7 @@ fn write_stub(
     let declaration = &outline.declarations[stub];
     let head = declaration.head;
     let mut body = String::new();
-    let arguments = parameter_names(head, outline.language).ok_or(Reason::Stub)?;
+    let arguments = parameter_names(head).ok_or(Reason::Stub)?;
     for pair in &summary.pairs {
         let name = |place: &ResourceOrigin| match place {
             ResourceOrigin::Global(name) => Some(name.clone()),
@@ -225,35 +184,18 @@ fn write_stub(
         };
         let texture = name(&pair.texture).ok_or(Reason::Stub)?;
         let sampler = name(&pair.sampler).ok_or(Reason::Stub)?;
-        let sample = sample_statement(outline.language, pair.shape, &texture, &sampler);
+        let sample = sample_statement(pair.shape, &texture, &sampler);
         body.push_str(&sample.ok_or(Reason::Sampling)?);
     }
-    for name in summary.globals.iter().filter(|name| is_built_in(name)) {
-        let _ = write!(body, "{name};");
-    }
-    let result = match outline.language {
-        Language::Wesl => head.split_once("->").map(|(_, result)| result.trim()),
-        Language::Glsl => {
-            let (before, _) = head.split_once('(').ok_or(Reason::Stub)?;
-            let before = before.trim_end();
-            let result = before.strip_suffix(declaration.name()).ok_or(Reason::Stub)?.trim();
-            (result != "void").then_some(result)
-        }
-    };
-    match (outline.language, result) {
-        (_, None) => {}
-        (Language::Wesl, Some(result)) => {
-            let _ = write!(body, "var {RESULT}:{result};return {RESULT};");
-        }
-        (Language::Glsl, Some(result)) => {
-            let _ = write!(body, "{result} {RESULT};return {RESULT};");
-        }
+    if let Some((_, result)) = head.split_once("->") {
+        let result = result.trim();
+        let _ = write!(body, "var {RESULT}:{result};return {RESULT};");
     }
     Ok(format!("{head}{{{body}}}\n"))
 }
 
 /// The names of a function's parameters.
-fn parameter_names(head: &str, language: Language) -> Option<Vec<String>> {
+fn parameter_names(head: &str) -> Option<Vec<String>> {
     let open = head.find('(')?;
     let mut list = head.get(open + 1..)?;
     let (mut depth, mut starts, mut end) = (0_i32, vec![0], list.len());
@@ -273,60 +215,22 @@ fn parameter_names(head: &str, language: Language) -> Option<Vec<String>> {
     let ends = starts.iter().skip(1).map(|start| start - 1).chain([end]);
     let each = starts.iter().zip(ends).map(|(start, end)| &list[*start..end]);
     let name = |parameter: &str| {
-        let named = match language {
-            Language::Wesl => parameter.split_once(':')?.0,
-            Language::Glsl => parameter.split('[').next()?,
-        };
+        let named = parameter.split_once(':')?.0;
         words(named).last().map(|word| word.text.to_owned())
     };
-    each.filter(|parameter| !matches!(parameter.trim(), "" | "void")).map(name).collect()
+    each.filter(|parameter| !parameter.trim().is_empty()).map(name).collect()
 }
 
 /// A statement that samples a texture.
-fn sample_statement(
-    language: Language,
-    shape: TextureShape,
-    texture: &str,
-    sampler: &str,
-) -> Option<String> {
-    let TextureShape { coordinates, cube, arrayed, depth, compares } = shape;
+fn sample_statement(shape: TextureShape, texture: &str, sampler: &str) -> Option<String> {
+    let TextureShape { coordinates, arrayed, depth, compares } = shape;
     let size = if coordinates > 1 { coordinates.to_string() } else { return None };
-    Some(match language {
-        Language::Wesl => {
-            let layer = if arrayed { ",0" } else { "" };
-            let at = format!("{texture},{sampler},vec{size}f(){layer}");
-            match (depth, compares) {
-                (true, true) => format!("_=textureSampleCompareLevel({at},0.0);"),
-                (true, false) => format!("_=textureSampleLevel({at},0);"),
-                (false, false) => format!("_=textureSampleLevel({at},0.0);"),
-                (false, true) => return None,
-            }
-        }
-        Language::Glsl => {
-            let kind = if cube { "Cube".to_owned() } else { format!("{size}D") };
-            let array = if arrayed { "Array" } else { "" };
-            let words = coordinates + u8::from(arrayed) + u8::from(compares);
-            match (depth, compares) {
-                (true, true) => {
-                    // A lookup that compares cannot be given the level of an array or a cube.
-                    let combined = format!("sampler{kind}{array}Shadow({texture},{sampler})");
-                    match (cube, arrayed) {
-                        (true, true) => format!("texture({combined},vec4(0.0),0.0);"),
-                        (false, false) => format!("textureLod({combined},vec{words}(0.0),0.0);"),
-                        (false, true) => {
-                            format!("textureGrad({combined},vec{words}(0.0),vec2(0.0),vec2(0.0));")
-                        }
-                        (true, false) => {
-                            format!("textureGrad({combined},vec{words}(0.0),vec3(0.0),vec3(0.0));")
-                        }
-                    }
-                }
-                (false, false) => {
-                    let combined = format!("sampler{kind}{array}({texture},{sampler})");
-                    format!("textureLod({combined},vec{words}(0.0),0.0);")
-                }
-                _ => return None,
-            }
-        }
+    let layer = if arrayed { ",0" } else { "" };
+    let at = format!("{texture},{sampler},vec{size}f(){layer}");
+    Some(match (depth, compares) {
+        (true, true) => format!("_=textureSampleCompareLevel({at},0.0);"),
+        (true, false) => format!("_=textureSampleLevel({at},0);"),
+        (false, false) => format!("_=textureSampleLevel({at},0.0);"),
+        (false, true) => return None,
     })
 }

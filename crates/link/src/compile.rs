@@ -9,13 +9,13 @@ use lamplight_bundle::{
     Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Language, SourceClip,
     SpirvForm, Target, Unit,
 };
-use lamplight_compose::Composed;
+use lamplight_compose::{self as compose, Composed};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use lamplight_emit::{self as emit, targets};
 use lamplight_files::limits::GROUP_BYTES;
 use lamplight_glsl::wgsl::Clip;
 use lamplight_validate::{
-    self as validate, Validated, check_glsl, on_large_stack, validate_for_some, validate_unguarded,
+    self as validate, Validated, on_large_stack, validate_for_some, validate_unguarded,
 };
 
 /// One text in two forms: as its author reads it, for errors; and without comments and layout,
@@ -35,9 +35,8 @@ pub struct CompiledUnit {
     pub whole: Vec<(Target, Reason)>,
 }
 
-/// Compiles a text for every target. Every command gets the bytes that ship from here.
-///
-/// GLSL that naga's front end does not read is translated to WGSL first.
+/// Compiles a text for every target. Every command gets the bytes that ship from here. GLSL is translated
+/// to WGSL first.
 ///
 /// # Errors
 /// What is wrong with the text, at the places in its author's files.
@@ -47,16 +46,74 @@ pub fn compile(
     targets: &[Target],
     linker: &Linker<'_>,
 ) -> Result<CompiledUnit, Diagnostics> {
+    match text.composed.language {
+        Language::Wesl => compile_wgsl(text, entry, targets, linker),
+        Language::Glsl => compile_glsl(text, entry, targets, linker),
+    }
+}
+
+/// Compiles a text in GLSL. Most texts are linked from their lean form alone; only what has to be told to
+/// the author is looked for in a translation of his own text.
+fn compile_glsl(
+    text: &TextForms<'_>,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<CompiledUnit, Diagnostics> {
     let clip = positions_of(text.composed, linker.conventions);
-    if clip != Clip::Kept || lamplight_glsl::is_numbered(&text.composed.text) {
-        return compile_translated(text, clip, entry, targets, linker);
+    let mut lean = match validate::glsl_as_plain_wgsl(text.lean, clip) {
+        Ok(lean) => lean,
+        // Only the author's text has places for errors.
+        Err(_) => validate::glsl_as_plain_wgsl(text.composed, clip)?,
+    };
+    let has_warnings = !std::mem::take(&mut lean.warnings).is_empty();
+    let lean = compose::lean(&lean);
+    if !has_warnings && let Some(made) = link_whole(&lean, entry, targets, linker)? {
+        return Ok(made);
     }
-    match compile_text(text, entry, targets, linker) {
-        Err(errors) if text.composed.language == Language::Glsl && !are_final(&errors) => {
-            compile_translated(text, clip, entry, targets, linker)
-        }
-        made => made,
+    let mut composed = validate::glsl_as_plain_wgsl(text.composed, clip)?;
+    let mut warnings = std::mem::take(&mut composed.warnings);
+    let derivatives = validate::lint_derivatives(&composed);
+    let allowed = match derivatives.is_empty() {
+        true => None,
+        false => Some((
+            validate::glsl_as_wgsl(text.composed, clip)?,
+            compose::lean(&validate::glsl_as_wgsl(text.lean, clip)?),
+        )),
+    };
+    let (composed, lean) = allowed.as_ref().map_or((&composed, &lean), |(text, lean)| (text, lean));
+    let forms = TextForms { composed, lean };
+    let made = compile_wgsl(&forms, entry, targets, linker).map_err(validate::of_translations)?;
+    let is_for_browsers = targets.contains(&Target::WGSL);
+    warnings.extend(derivatives.into_iter().map(|warning| match is_for_browsers {
+        true => warning.note(format!(
+            "the output for `{}` has `diagnostic(off, derivative_uniformity);`",
+            Target::WGSL
+        )),
+        false => warning,
+    }));
+    warnings.extend(made.warnings);
+    Ok(CompiledUnit { warnings, ..made })
+}
+
+/// A text that is linked in all targets and breaks no rule of browsers.
+fn link_whole(
+    lean: &Composed,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<Option<CompiledUnit>, Diagnostics> {
+    let Ok(linked) = linker.link(lean, entry) else { return Ok(None) };
+    if linked.suspect || linked.targets.iter().any(Result::is_err) {
+        return Ok(None);
     }
+    let made = targets
+        .iter()
+        .zip(linked.targets)
+        .filter_map(|(target, made)| Some((target.name().to_owned(), made.ok()?)));
+    let unit = Unit { reflection: linked.reflection, targets: made.collect() };
+    check_size(&unit).map_err(|error| vec![error])?;
+    Ok(Some(CompiledUnit { unit, warnings: Vec::new(), whole: Vec::new() }))
 }
 
 /// The clip space that the positions of a text are converted from.
@@ -67,36 +124,13 @@ fn positions_of(composed: &Composed, conventions: Conventions) -> Clip {
     }
 }
 
-/// Whether a translation of the text would not change these errors.
-fn are_final(errors: &[Diagnostic]) -> bool {
-    let are_of_size = [codes::NAGA_EXHAUSTED, codes::LIMIT_EXCEEDED];
-    errors.iter().any(|error| are_of_size.contains(&error.code))
-}
-
-fn compile_translated(
-    text: &TextForms<'_>,
-    clip: Clip,
-    entry: &str,
-    targets: &[Target],
-    linker: &Linker<'_>,
-) -> Result<CompiledUnit, Diagnostics> {
-    let mut wgsl = validate::glsl_as_wgsl(text.composed, clip)?;
-    let facts = std::mem::take(&mut wgsl.warnings);
-    let translated = TextForms { composed: &wgsl, lean: &wgsl };
-    let mut made = compile_text(&translated, entry, targets, linker).map_err(|errors| {
-        errors.into_iter().map(validate::of_translation).collect::<Diagnostics>()
-    })?;
-    made.warnings.splice(0..0, facts);
-    Ok(made)
-}
-
-fn compile_text(
+/// Compiles a text in WGSL.
+fn compile_wgsl(
     text: &TextForms<'_>,
     entry: &str,
     targets: &[Target],
     linker: &Linker<'_>,
 ) -> Result<CompiledUnit, Diagnostics> {
-    on_large_stack(|| check_glsl(text.lean).or_else(|_| check_glsl(text.composed)))?;
     let linked = match linker.link(text.lean, entry) {
         Ok(linked) => linked,
         Err(reason) => {
@@ -120,9 +154,9 @@ fn compile_text(
         let left: Vec<Target> = whole.iter().map(|(target, _)| *target).collect();
         unit.targets.extend(compile_whole(text, entry, &left, linker)?.0.targets);
     }
-    let mut warnings = if linked.suspect { lint_text(text, targets)? } else { Vec::new() };
+    let warnings = if linked.suspect { lint_text(text, targets)? } else { Vec::new() };
     if linked.suspect {
-        warnings.extend(fit_unit(text, entry, &mut unit, &warnings)?);
+        fit_unit(text, entry, &mut unit)?;
     }
     check_size(&unit).map_err(|error| vec![error])?;
     Ok(CompiledUnit { unit, warnings, whole })
@@ -194,12 +228,7 @@ fn check_size(unit: &Unit) -> Result<(), Diagnostic> {
 
 fn lint_text(text: &TextForms<'_>, targets: &[Target]) -> Result<Diagnostics, Diagnostics> {
     let for_browsers = targets.contains(&Target::WGSL);
-    let found = match text.composed.language {
-        Language::Wesl => validate::lint_wgsl(text.composed, for_browsers),
-        Language::Glsl => {
-            validate::lint(text.composed, &validate_for_some(text.composed)?, for_browsers)
-        }
-    };
+    let found = validate::lint_wgsl(text.composed, for_browsers);
     // Browsers refuse some, and a text can make others errors.
     match found.iter().any(|one| one.severity == Severity::Error) {
         true => Err(found),
@@ -221,29 +250,23 @@ fn compile_whole(
     let mut unit = compile_unit(text, &validated, entry, targets, linker)
         .map_err(|error| vec![emit::at_entry(error, text.composed, entry)])?;
     // Lints are looked for in the author's text, since the lean text has no places.
-    let mut warnings = match validate::has_lints(text.lean, &validated) {
+    let warnings = match validate::has_lints(text.lean) {
         true => lint_text(text, targets)?,
         false => Vec::new(),
     };
-    warnings.extend(fit_unit(text, entry, &mut unit, &warnings)?);
+    fit_unit(text, entry, &mut unit)?;
     Ok((unit, warnings))
 }
 
-/// Makes the WGSL of a unit such that browsers take it, where the language of the source has
-/// another rule for derivatives.
-fn fit_unit(
-    text: &TextForms<'_>,
-    entry: &str,
-    unit: &mut Unit,
-    known: &[Diagnostic],
-) -> Result<Diagnostics, Diagnostics> {
-    let is_wesl = text.lean.language == Language::Wesl;
-    if is_wesl && !text.lean.text.contains("@diagnostic") {
-        return Ok(Vec::new());
+/// Makes the WGSL of a unit such that browsers take it, where filters at statements allow derivatives:
+/// naga does not read these.
+fn fit_unit(text: &TextForms<'_>, entry: &str, unit: &mut Unit) -> Result<(), Diagnostics> {
+    if !text.lean.text.contains("@diagnostic") {
+        return Ok(());
     }
     match unit.targets.get_mut(Target::WGSL.name()) {
-        Some(artifact) => fit_for_browsers(text, entry, artifact, known),
-        None => Ok(Vec::new()),
+        Some(artifact) => fit_for_browsers(text, entry, artifact),
+        None => Ok(()),
     }
 }
 

@@ -1,6 +1,8 @@
 //! Separate compilation: every function is translated once, by itself, and texts are put together
 //! from functions. This is the one way from a composed text to its outputs, for every command.
 //!
+//! Texts are WGSL: GLSL is translated before, by [`compile()`].
+//!
 //! # Why an output is a function of its text
 //!
 //! 1. [`outline`] takes the declarations of a text and their references from the composer, which
@@ -34,10 +36,6 @@
 //!   it writes them; the namer leaves a mark as it is.
 //! - HLSL declares a structure differently if an entry point returns it, and every function that
 //!   uses it gets that declaration. So the canonical text's entry point returns it too.
-//! - GLSL's built-in variables enter a module in the order in which its text names them, and Metal
-//!   passes them along in that order. So the canonical text first names them in a fixed order.
-//! - A texture in GLSL is taken for a depth texture if a callee samples it with a comparison. So
-//!   stubs do this too.
 //!
 //! `link::whole_and_linked` in the tests compares what is linked with what naga writes of the whole
 //! text, declaration by declaration and up to names, for every target: it fails where a version of
@@ -71,7 +69,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use canonical::{Recipe, make_recipe};
-use lamplight_bundle::Language;
 use lamplight_bundle::{Artifact, Conventions, Reflection, Target};
 use lamplight_compose::Composed;
 use lamplight_files::limits::LINKED_BYTES;
@@ -131,22 +128,16 @@ impl<'a> Linker<'a> {
     pub fn link(&self, lean: &Composed, entry: &str) -> Result<Linked, Reason> {
         let outline = Outline::read(lean, entry)?;
         let mut units: Vec<Option<Arc<Unit>>> = vec![None; outline.declarations.len()];
-        let mut functions = outline.functions.clone();
-        if outline.language == Language::Wesl {
-            functions.pop();
-        }
+        let functions = outline.functions_before_entry();
         // A declaration that several functions name is read once for each of them, so all of them
         // count.
         let mut left = LINKED_BYTES;
-        for function in &functions {
+        for function in functions {
             let unit = canonical::UnitId::Function(*function);
             units[*function] = Some(self.unit(&outline, unit, &units, &mut left)?);
         }
         let entry = self.unit(&outline, canonical::UnitId::Entry, &units, &mut left)?;
-        let suspect = match outline.language {
-            Language::Wesl => entry.summary.breaks_rules,
-            Language::Glsl => entry.summary.derives_non_uniformly,
-        };
+        let suspect = entry.summary.breaks_rules;
         let reflection = entry.reflection.clone().ok_or(Reason::EntryPoint)?;
         let named = functions.iter().filter_map(|function| {
             Some((outline.declarations[*function].name(), units[*function].clone()?))
@@ -166,10 +157,8 @@ impl<'a> Linker<'a> {
         let outline = Outline::read(lean, entry).ok()?;
         let index = self.targets.iter().position(|known| *known == target)?;
         let mut units: Vec<Option<Arc<Unit>>> = vec![None; outline.declarations.len()];
-        let is_wesl = outline.language == Language::Wesl;
-        let count = outline.functions.len() - usize::from(is_wesl);
         let mut left = LINKED_BYTES;
-        for function in &outline.functions[..count] {
+        for function in outline.functions_before_entry() {
             let name = || Some(outline.declarations[*function].name().to_owned());
             let unit = canonical::UnitId::Function(*function);
             match self.unit(&outline, unit, &units, &mut left) {

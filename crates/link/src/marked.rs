@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use naga::{ArraySize, Module, Scalar, ScalarKind, Type, TypeInner};
 
-use super::canonical::{BUILT_INS, IDLE, Recipe, UnitId};
+use super::canonical::{IDLE, Recipe, UnitId};
 use super::mark::{self, SCRATCH};
 use super::outline::Outline;
 use super::reason::Reason;
@@ -19,7 +19,7 @@ pub fn mark_module(
     let mut marked = module.clone();
     let mut names = MarkedNames(vec![String::new()]);
     let is_function = matches!(recipe.unit, UnitId::Function(_));
-    mark_types(&mut marked, module, &mut names, is_function)?;
+    mark_types(&mut marked, module, &mut names)?;
     mark_values(&mut marked, &mut names);
     mark_functions(outline, recipe, &mut marked, &mut names);
     if is_function {
@@ -39,22 +39,13 @@ impl MarkedNames {
     }
 }
 
-fn mark_types(
-    marked: &mut Module,
-    module: &Module,
-    names: &mut MarkedNames,
-    is_function: bool,
-) -> Result<(), Reason> {
+fn mark_types(marked: &mut Module, module: &Module, names: &mut MarkedNames) -> Result<(), Reason> {
     let predeclared: BTreeSet<_> =
         module.special_types.predeclared_types.values().copied().collect();
     for (handle, found) in module.types.iter() {
         let name = match (&found.name, &found.inner) {
             _ if predeclared.contains(&handle) => continue,
             (Some(name), TypeInner::Struct { members: _, span: _ }) => Some(names.mark(name)),
-            // The result of the entry point that naga makes of a GLSL `main`.
-            (None, TypeInner::Struct { members: _, span: _ }) if is_function => {
-                Some(mark::write_mark(SCRATCH))
-            }
             (_, TypeInner::Array { base: _, size: _, stride: _ }) => {
                 Some(array_name(marked, found).ok_or(Reason::Declaration)?)
             }
@@ -99,10 +90,6 @@ fn mark_functions(
         recipe.stubs.iter().map(|(stub, _)| outline.declarations[*stub].name()).collect();
     for (_, function) in marked.functions.iter_mut() {
         let Some(name) = function.name.clone() else { continue };
-        if name == BUILT_INS {
-            function.name = Some(mark::write_mark(SCRATCH));
-            continue;
-        }
         function.name = Some(names.mark(&name));
         if stubs.contains(&*name) {
             function.arguments.iter_mut().for_each(|argument| argument.name = None);

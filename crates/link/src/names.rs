@@ -15,7 +15,6 @@ use super::reason::Reason;
 use super::text;
 use lamplight_bundle::Target;
 
-use lamplight_bundle::Language;
 use lamplight_emit::emit;
 use lamplight_validate::{Validated, info_unchecked};
 
@@ -189,5 +188,5 @@ fn trivial_module(name: &str) -> Option<Validated> {
     let init = module.global_expressions.append(one, Span::UNDEFINED);
     module.constants.append(Constant { name: Some(name.to_owned()), ty, init }, Span::UNDEFINED);
     let info = info_unchecked(&module).ok()?;
-    Some(Validated { language: Language::Wesl, module, info, portable: true })
+    Some(Validated { module, info, portable: true })
 }

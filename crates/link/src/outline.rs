@@ -8,9 +8,9 @@ use naga::ShaderStage;
 
 use super::mark;
 use super::reason::Reason;
-use lamplight_bundle::{Language, Stage};
+use lamplight_bundle::Stage;
 use lamplight_compose::{Composed, Part, PartKind};
-use lamplight_syntax::words::{Word, has_word, words};
+use lamplight_syntax::words::words;
 
 /// 128 bits of a hash, which identify content.
 pub type ContentKey = [u8; 16];
@@ -46,13 +46,11 @@ impl Declaration<'_> {
 /// A text that can be put together from functions.
 #[derive(Debug)]
 pub struct Outline<'a> {
-    pub language: Language,
     pub stage: ShaderStage,
     /// Directives.
     pub header: String,
     pub declarations: Vec<Declaration<'a>>,
-    /// Indices of the functions, each after those that it calls. The last one is the entry point;
-    /// in GLSL that is `main`, which naga wraps in a function of its own.
+    /// Indices of the functions, each after those that it calls. The last one is the entry point.
     pub functions: Vec<usize>,
     /// The structure that the entry point returns, if it returns one.
     pub interface: Option<usize>,
@@ -81,7 +79,6 @@ impl<'a> Outline<'a> {
         let header = directives.map(text).collect::<Vec<_>>().concat();
         let declarations = read_declarations(lean)?;
         let mut outline = Outline {
-            language: lean.language,
             stage,
             header,
             named: first_of_name(&declarations),
@@ -96,6 +93,11 @@ impl<'a> Outline<'a> {
 
     pub fn entry(&self) -> usize {
         self.functions.last().copied().unwrap_or_default()
+    }
+
+    /// All functions but the entry point.
+    pub fn functions_before_entry(&self) -> &[usize] {
+        self.functions.split_last().map_or(&[], |(_, before)| before)
     }
 
     /// The functions that a function calls or may call, in the order of the text.
@@ -113,9 +115,6 @@ impl<'a> Outline<'a> {
 
     /// The structure that a WGSL entry point returns.
     fn returned(&self) -> Option<usize> {
-        if self.language == Language::Glsl {
-            return None;
-        }
         let entry = &self.declarations[self.entry()];
         let (_, result) = entry.head.split_once("->")?;
         let named = words(result).filter(|word| word.before != b'@').last()?.text;
@@ -138,22 +137,17 @@ fn first_of_name<'a>(declared: &[Declaration<'a>]) -> FxHashMap<&'a str, usize> 
 
 /// The stage of the one entry point.
 fn entry_stage(lean: &Composed, entry: &str) -> Result<ShaderStage, Reason> {
-    let stage = match lean.language {
-        Language::Glsl => lean.stage,
-        Language::Wesl => {
-            let stages = lean.parts.iter().filter_map(|part| {
-                let text = &lean.text[part.range.clone()];
-                let head = text.split('{').next().unwrap_or_default();
-                (part.kind == PartKind::Function).then(|| stage_attribute(head)).flatten()
-            });
-            let found: Vec<Stage> = stages.collect();
-            let is_known = lean.parts.iter().any(|part| {
-                part.kind == PartKind::Function && part.names.iter().any(|name| name == entry)
-            });
-            found.first().copied().filter(|_| found.len() == 1 && is_known)
-        }
-    };
-    match stage {
+    let stages = lean.parts.iter().filter_map(|part| {
+        let text = &lean.text[part.range.clone()];
+        let head = text.split('{').next().unwrap_or_default();
+        (part.kind == PartKind::Function).then(|| stage_attribute(head)).flatten()
+    });
+    let found: Vec<Stage> = stages.collect();
+    let is_known = lean
+        .parts
+        .iter()
+        .any(|part| part.kind == PartKind::Function && part.names.iter().any(|name| name == entry));
+    match found.first().copied().filter(|_| found.len() == 1 && is_known) {
         Some(Stage::Vertex) => Ok(ShaderStage::Vertex),
         Some(Stage::Fragment) => Ok(ShaderStage::Fragment),
         _ => Err(Reason::EntryPoint),
@@ -205,9 +199,6 @@ fn read_declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
     });
     let mut declared: Vec<Declaration<'_>> = declared.collect();
     find_head_uses(&mut declared);
-    if lean.language == Language::Glsl && initialised_by_variables(&declared) {
-        return Err(Reason::Initialiser);
-    }
     Ok(declared)
 }
 
@@ -241,14 +232,9 @@ fn all_of(lean: &Composed, alias: u32, numbers: &[usize]) -> Vec<usize> {
 /// Refuses a text with a declaration that cannot be separated from the others.
 fn refuse_any(lean: &Composed, kept: &[(usize, &Part)]) -> Result<(), Reason> {
     let mut functions: FxHashSet<&String> = FxHashSet::default();
-    // Few texts use `__LINE__`, so one search spares most texts the search in each declaration.
-    let asks_line = lean.language == Language::Glsl && lean.text.contains("__LINE__");
     for (_, part) in kept {
         let text = &lean.text[part.range.clone()];
-        refuse_part(part, text, lean.language)?;
-        if asks_line && text.contains("__LINE__") {
-            return Err(Reason::Declaration);
-        }
+        refuse_part(part, text)?;
         if part.kind == PartKind::Function && !part.names.iter().all(|name| functions.insert(name))
         {
             return Err(Reason::Overload);
@@ -259,16 +245,11 @@ fn refuse_any(lean: &Composed, kept: &[(usize, &Part)]) -> Result<(), Reason> {
 
 /// Refuses the kinds of declaration that cannot be separated. The kinds are listed in
 /// `crates/compose/src/part.rs`.
-fn refuse_part(part: &Part, text: &str, language: Language) -> Result<(), Reason> {
-    let is_storage = |text: &str| match language {
-        Language::Wesl => {
-            let space =
-                text.split_once('<').filter(|(before, _)| before.trim_end().ends_with("var"));
-            space.is_some_and(|(_, space)| {
-                words(space).next().is_some_and(|word| word.text == "storage")
-            })
-        }
-        Language::Glsl => words(text).any(|word| word.text == "buffer"),
+fn refuse_part(part: &Part, text: &str) -> Result<(), Reason> {
+    let is_storage = |text: &str| {
+        let space = text.split_once('<').filter(|(before, _)| before.trim_end().ends_with("var"));
+        let is_it = |space: &str| words(space).next().is_some_and(|word| word.text == "storage");
+        space.is_some_and(|(_, space)| is_it(space))
     };
     match part.kind {
         PartKind::Override => Err(Reason::Override),
@@ -276,42 +257,10 @@ fn refuse_part(part: &Part, text: &str, language: Language) -> Result<(), Reason
         PartKind::Other => Err(Reason::Declaration),
         // Aliases were expanded already: this one could not be.
         PartKind::Alias => Err(Reason::Declaration),
-        // A specialisation constant of GLSL.
-        PartKind::Constant | PartKind::Variable
-            if language == Language::Glsl && has_word(text, "constant_id") =>
-        {
-            Err(Reason::Override)
-        }
         PartKind::Variable if is_storage(text) => Err(Reason::StorageBuffer),
         PartKind::Variable if text.contains("binding_array") => Err(Reason::BindingArray),
         _ => Ok(()),
     }
-}
-
-/// Whether a declaration other than a function or an assertion names a variable, such as in an
-/// initial value. Canonical texts sort variables by name, so a variable could come before the one
-/// that it needs. An initial value that calls a function counts too: naga may drop it, and only a
-/// text that is compiled as a whole is checked for that.
-fn initialised_by_variables(declared: &[Declaration<'_>]) -> bool {
-    let is_variable = |index: &usize| declared[*index].kind == PartKind::Variable;
-    let early = |declaration: &&Declaration<'_>| {
-        !matches!(declaration.kind, PartKind::Function | PartKind::Assertion)
-    };
-    declared
-        .iter()
-        .filter(early)
-        .any(|declaration| declaration.uses.iter().any(is_variable) || is_called_for(declaration))
-}
-
-/// Whether a variable of GLSL has an initial value with a call of anything but a constructor.
-fn is_called_for(declaration: &Declaration<'_>) -> bool {
-    let Some((_, value)) = declaration.text.split_once('=') else { return false };
-    let is_call =
-        |word: &Word<'_>| value[word.at + word.text.len()..].trim_start().starts_with('(');
-    let is_type = |name: &str| ["vec", "mat"].iter().any(|kind| name.contains(kind));
-    let is_scalar = |name: &str| ["bool", "int", "uint", "float"].contains(&name);
-    declaration.kind == PartKind::Variable
-        && words(value).any(|word| is_call(&word) && !is_type(word.text) && !is_scalar(word.text))
 }
 
 /// The functions that the entry point reaches, callees first.

@@ -19,12 +19,10 @@ pub enum Reason {
     StorageBuffer,
     /// An array of bindings: writers ask whether its index is uniform.
     BindingArray,
-    /// GLSL: a prototype, or two functions of one name.
+    /// Two functions of one name.
     Overload,
-    /// A declaration that is not understood, such as a `precision` statement.
+    /// A declaration that is not understood.
     Declaration,
-    /// GLSL: a variable whose initial value names another variable.
-    Initialiser,
     /// An identifier has the form of a mark.
     MarkedName,
     /// Functions call each other in a cycle, or are nested too deeply.
@@ -68,9 +66,8 @@ impl Reason {
             Self::Override => "the text has overrides",
             Self::StorageBuffer => "the text has storage buffers",
             Self::BindingArray => "the text has binding arrays",
-            Self::Overload => "the text has prototypes or overloaded functions",
+            Self::Overload => "the text has two functions of one name",
             Self::Declaration => "the text has a declaration that cannot be separated",
-            Self::Initialiser => "a variable is initialised from another variable",
             Self::MarkedName => "an identifier looks like a mark of the linker",
             Self::Recursion => "functions call each other in a cycle or nest too deeply",
             Self::Large => "the text or a function is too large, or functions name too much",

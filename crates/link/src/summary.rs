@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use naga::valid::FunctionInfo;
 use naga::{
-    Block, Expression, Function, GlobalVariable, Handle, ImageClass, ImageDimension, Module,
-    SampleLevel, ShaderStage, Statement, TypeInner,
+    Block, Expression, Function, Handle, ImageClass, ImageDimension, Module, SampleLevel,
+    ShaderStage, Statement, TypeInner,
 };
 
 use super::outline::{ContentKey, hash_parts};
@@ -18,10 +18,6 @@ pub struct FunctionSummary {
     pub globals: BTreeSet<String>,
     /// Textures and samplers that it uses together. GLSL combines them.
     pub pairs: BTreeSet<SampledPair>,
-    /// It takes derivatives, or samples with a level that derivatives choose.
-    pub derives: bool,
-    /// It does so in non-uniform control flow. This is for GLSL; WGSL has rules of its own.
-    pub derives_non_uniformly: bool,
     /// What its callers notice of it by the rules of WGSL.
     pub rules: lamplight_rules::Summary,
     /// It, or a function that it calls, breaks one of these.
@@ -53,27 +49,16 @@ pub enum ResourceOrigin {
 pub struct TextureShape {
     /// Components of a coordinate.
     pub coordinates: u8,
-    pub cube: bool,
     pub arrayed: bool,
     /// `depth` is for a depth texture, `compares` for a comparison sampler.
     pub depth: bool,
     pub compares: bool,
 }
 
-/// The name by which a variable's declaration is found. A GLSL block without an instance name is
-/// found by its first member.
-pub fn name_of(module: &Module, variable: &GlobalVariable) -> Option<String> {
-    match (&variable.name, &module.types[variable.ty].inner) {
-        (Some(name), _) => Some(name.clone()),
-        (None, TypeInner::Struct { members, span: _ }) => members.first()?.name.clone(),
-        _ => None,
-    }
-}
-
 /// Names of the module's variables that a function uses. `None` if one of them has no name.
 pub fn used_globals(module: &Module, info: &FunctionInfo) -> Option<BTreeSet<String>> {
     let used = module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty());
-    used.map(|(_, variable)| name_of(module, variable)).collect()
+    used.map(|(_, variable)| variable.name.clone()).collect()
 }
 
 /// Summarises a function. `callee` gives the summaries of the functions that it calls. `None` where
@@ -87,7 +72,6 @@ pub fn summarise_function<'s>(
     let mut summary =
         FunctionSummary { globals: used_globals(module, info)?, ..FunctionSummary::default() };
     for (_, expression) in function.expressions.iter() {
-        summary.derives |= is_derivative(expression);
         summary.only_fragments |= is_derivative(expression);
         if let Expression::ImageSample { image, sampler, .. } = expression {
             let shape = sample_shape(module, info, *image, *sampler)?;
@@ -98,8 +82,8 @@ pub fn summarise_function<'s>(
             summary.pairs.insert(SampledPair { texture, sampler, shape });
         }
     }
-    let mut walk = SummaryWalk { module, function, callee, summary, has_diverged: false };
-    walk.block(&function.body, false)?;
+    let mut walk = SummaryWalk { module, function, callee, summary };
+    walk.block(&function.body)?;
     Some(walk.summary)
 }
 
@@ -118,7 +102,7 @@ fn resource_place(
 ) -> Option<ResourceOrigin> {
     match function.expressions[handle] {
         Expression::GlobalVariable(variable) => {
-            name_of(module, &module.global_variables[variable]).map(ResourceOrigin::Global)
+            module.global_variables[variable].name.clone().map(ResourceOrigin::Global)
         }
         Expression::FunctionArgument(number) => Some(ResourceOrigin::Argument(number)),
         _ => None,
@@ -148,7 +132,7 @@ fn sample_shape(
         ImageDimension::D2 => 2,
         ImageDimension::D3 | ImageDimension::Cube => 3,
     };
-    Some(TextureShape { coordinates, cube: dim == ImageDimension::Cube, arrayed, depth, compares })
+    Some(TextureShape { coordinates, arrayed, depth, compares })
 }
 
 /// Walks over a function's statements.
@@ -157,60 +141,38 @@ struct SummaryWalk<'w, 's> {
     function: &'w Function,
     callee: &'w dyn Fn(Handle<Function>) -> Option<&'s FunctionSummary>,
     summary: FunctionSummary,
-    /// Some fragments may have left the function or a loop, so control flow is no longer uniform.
-    has_diverged: bool,
 }
 
 impl SummaryWalk<'_, '_> {
-    fn block(&mut self, block: &Block, inside: bool) -> Option<()> {
-        block.iter().try_for_each(|statement| self.statement(statement, inside))
+    fn block(&mut self, block: &Block) -> Option<()> {
+        block.iter().try_for_each(|statement| self.statement(statement))
     }
 
-    fn statement(&mut self, statement: &Statement, inside: bool) -> Option<()> {
-        let is_non_uniform = inside || self.has_diverged;
+    fn statement(&mut self, statement: &Statement) -> Option<()> {
         match statement {
-            Statement::Emit(range) => {
-                let mut emitted = range.clone();
-                let is_derived = |handle| is_derivative(&self.function.expressions[handle]);
-                self.summary.derives_non_uniformly |= is_non_uniform && emitted.any(is_derived);
+            Statement::Block(block) => self.block(block)?,
+            Statement::If { condition: _, accept, reject } => {
+                self.block(accept)?;
+                self.block(reject)?;
             }
-            Statement::Block(block) => self.block(block, inside)?,
-            Statement::If { accept, reject, .. } => {
-                self.block(accept, true)?;
-                self.block(reject, true)?;
+            Statement::Switch { selector: _, cases } => {
+                cases.iter().try_for_each(|case| self.block(&case.body))?;
             }
-            Statement::Switch { cases, .. } => {
-                cases.iter().try_for_each(|case| self.block(&case.body, true))?;
+            Statement::Loop { body, continuing, break_if: _ } => {
+                self.block(body)?;
+                self.block(continuing)?;
             }
-            Statement::Loop { body, continuing, .. } => {
-                self.block(body, true)?;
-                self.block(continuing, true)?;
-            }
-            Statement::Kill => {
-                self.summary.only_fragments = true;
-                self.has_diverged = true;
-            }
-            Statement::Return { .. } | Statement::Break | Statement::Continue => {
-                self.has_diverged |= inside;
-            }
-            Statement::Call { function, arguments, .. } => {
-                self.call(*function, arguments, is_non_uniform)?;
+            Statement::Kill => self.summary.only_fragments = true,
+            Statement::Call { function, arguments, result: _ } => {
+                self.call(*function, arguments)?
             }
             _ => {}
         }
         Some(())
     }
 
-    fn call(
-        &mut self,
-        function: Handle<Function>,
-        arguments: &[Handle<Expression>],
-        is_non_uniform: bool,
-    ) -> Option<()> {
+    fn call(&mut self, function: Handle<Function>, arguments: &[Handle<Expression>]) -> Option<()> {
         let callee = (self.callee)(function)?;
-        self.summary.derives |= callee.derives;
-        self.summary.derives_non_uniformly |=
-            callee.derives_non_uniformly || is_non_uniform && callee.derives;
         self.summary.only_fragments |= callee.only_fragments;
         for pair in &callee.pairs {
             let at_call = |place: &ResourceOrigin| match place {

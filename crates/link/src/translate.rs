@@ -22,8 +22,8 @@ use lamplight_compose::Composed;
 use lamplight_emit as emit;
 use lamplight_emit::spirv::words;
 use lamplight_validate::{
-    Validated, check_switches, functions, guard, has_changed_shapes, has_lost_alignments, info_of,
-    is_bounded, is_small, keeps_rules, may_alias, on_large_stack, parse_glsl, prepare_part,
+    Validated, functions, guard, has_changed_shapes, has_lost_alignments, info_of, is_bounded,
+    is_small, may_alias, on_large_stack, prepare_part,
 };
 
 /// A unit in every target.
@@ -64,11 +64,7 @@ pub fn translate_unit(
     conventions: Conventions,
 ) -> Result<Translated, Reason> {
     let text = recipe.text(outline)?;
-    let stage = Some(match outline.stage {
-        naga::ShaderStage::Vertex => lamplight_bundle::Stage::Vertex,
-        _ => lamplight_bundle::Stage::Fragment,
-    });
-    let composed = Composed::of_text(outline.language, stage, text);
+    let composed = Composed::of_text(Language::Wesl, None, text);
     if !is_small(&composed).map_err(|_| Reason::Refused)? {
         return Err(Reason::Large);
     }
@@ -85,7 +81,7 @@ fn translate_inner(
     targets: &[Target],
     conventions: Conventions,
 ) -> Result<Translated, Reason> {
-    let mut module = parse_recipe(outline, &composed.text)?;
+    let mut module = parse_recipe(&composed.text)?;
     if !is_bounded(&module) {
         return Err(Reason::Refused);
     }
@@ -93,9 +89,6 @@ fn translate_inner(
     show_stubs(outline, recipe, &mut module)?;
     call_function(outline, recipe, &mut module)?;
     let info = info_of(&module).map_err(|_| Reason::Refused)?;
-    if outline.language == Language::Glsl {
-        check_switches(composed, &module, &info).map_err(|_| Reason::Refused)?;
-    }
     if has_changed_shapes(&composed.text, &module, &info) {
         return Err(Reason::Refused);
     }
@@ -110,13 +103,8 @@ fn translate_inner(
     }
     let entry = module.entry_points.first().ok_or(Reason::EntryPoint)?.name.clone();
     let (marked, names) = mark_module(outline, recipe, &module)?;
-    let marked = Validated {
-        language: outline.language,
-        module: marked,
-        info: info.clone(),
-        portable: true,
-    };
-    let validated = Validated { language: outline.language, module, info, portable: true };
+    let marked = Validated { module: marked, info: info.clone(), portable: true };
+    let validated = Validated { module, info, portable: true };
     let reflection = is_entry.then(|| emit::reflect(&validated, &entry).map(Arc::new));
     let reflection = reflection.transpose().map_err(|_| Reason::Refused)?;
     let parsed = ParsedRecipe { validated, entry, names, marked };
@@ -132,17 +120,9 @@ fn aliases(module: &Module, info: &ModuleInfo) -> bool {
     functions(module).any(|function| may_alias(module, function, &names))
 }
 
-fn parse_recipe(outline: &Outline<'_>, text: &str) -> Result<Module, Reason> {
-    match outline.language {
-        Language::Wesl => {
-            let module = wgsl::parse_str(text).map_err(|_| Reason::Refused)?;
-            if has_lost_alignments(text, &module) { Err(Reason::Refused) } else { Ok(module) }
-        }
-        Language::Glsl => {
-            let module = parse_glsl(outline.stage, text).map_err(|_| Reason::Refused)?;
-            if keeps_rules(text, outline.stage) { Ok(module) } else { Err(Reason::Refused) }
-        }
-    }
+fn parse_recipe(text: &str) -> Result<Module, Reason> {
+    let module = wgsl::parse_str(text).map_err(|_| Reason::Refused)?;
+    if has_lost_alignments(text, &module) { Err(Reason::Refused) } else { Ok(module) }
 }
 
 /// The summary of the unit, after a check that every stub uses the same variables as its function.
@@ -166,15 +146,15 @@ fn checked_summary(
         }
     }
     let callee = |handle| stubs.get(&handle).copied();
-    let found = match (recipe.unit, recipe.function) {
-        (UnitId::Function(index), _) => {
+    let found = match recipe.unit {
+        UnitId::Function(index) => {
             let name = Some(outline.declarations[index].name());
             let mut functions = module.functions.iter();
             let found = functions.find(|(_, function)| function.name.as_deref() == name);
             let (handle, function) = found.ok_or(Reason::Refused)?;
             summarise_function(module, &info[handle], function, &callee)
         }
-        (UnitId::Entry, _) => {
+        UnitId::Entry => {
             let point = module.entry_points.first().ok_or(Reason::EntryPoint)?;
             summarise_function(module, info.get_entry_point(0), &point.function, &callee)
         }
@@ -189,10 +169,7 @@ fn with_rules(
     composed: &Composed,
     summary: FunctionSummary,
 ) -> FunctionSummary {
-    if outline.language == Language::Glsl {
-        return summary;
-    }
-    let Some(function) = recipe.function else { return summary };
+    let function = recipe.function;
     let stub = |name: &str| {
         let mut stubs = recipe.stubs.iter();
         stubs.find(|(stub, _)| outline.declarations[*stub].name() == name)

@@ -11,8 +11,6 @@ use naga::{
 use super::canonical::{IDLE, Recipe, UnitId};
 use super::outline::Outline;
 use super::reason::Reason;
-use super::summary::name_of;
-use lamplight_bundle::Language;
 
 /// Makes each stub use the variables that its function uses. A named expression counts as a use,
 /// and writers write nothing for it.
@@ -24,7 +22,7 @@ pub fn show_stubs(
     let variables: BTreeMap<String, _> = module
         .global_variables
         .iter()
-        .map(|(handle, variable)| Some((name_of(module, variable)?, handle)))
+        .map(|(handle, variable)| Some((variable.name.clone()?, handle)))
         .collect::<Option<_>>()
         .ok_or(Reason::Declaration)?;
     let shown = |function: &mut Function, name: &str| {
@@ -47,7 +45,7 @@ pub fn show_stubs(
 }
 
 /// Makes the entry point that does nothing call the function, since writers leave out what no entry
-/// point reaches. GLSL's `main` is called already.
+/// point reaches.
 pub fn call_function(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
@@ -55,9 +53,6 @@ pub fn call_function(
 ) -> Result<(), Reason> {
     let UnitId::Function(index) = recipe.unit else { return Ok(()) };
     let name = outline.declarations[index].name();
-    if outline.language == Language::Glsl && name == "main" {
-        return Ok(());
-    }
     let found = module.functions.iter().find(|(_, found)| found.name.as_deref() == Some(name));
     let (handle, function) = found.ok_or(Reason::Refused)?;
     let types: Vec<_> = function.arguments.iter().map(|argument| argument.ty).collect();

@@ -191,27 +191,28 @@ pub fn lint_text(graph: &Graph, composed: &Composed) -> Diagnostics {
     {
         warnings.extend(stages::mistakes_of_stage(composed));
     }
-    match validate::validate_every(composed) {
-        Ok(validated) => {
-            warnings.extend(graph.own(documented::contradictions(composed)));
-            let more = graph.own(validate::lint(composed, &validated, false));
-            let lacking = validate::lacking(composed, &validated, validate::CAPABILITIES);
-            // A target that is asked for and lacks it is an error of `compile`.
-            let lacking = lacking.map(|error| Diagnostic { severity: Severity::Warning, ..error });
-            warnings.into_iter().chain(more).chain(lacking).collect()
-        }
-        Err(errors) => {
-            let found = match composed.language {
-                Language::Wesl => errors,
-                // naga's front end reads only a part of GLSL.
-                Language::Glsl => match validate::lint_as_wgsl(composed) {
-                    Ok(found) => graph.own(found),
-                    Err(errors) => errors,
-                },
-            };
-            warnings.into_iter().chain(found).collect()
-        }
-    }
+    let found = match composed.language {
+        Language::Wesl => lint_wgsl(graph, composed),
+        Language::Glsl => lint_glsl(graph, composed),
+    };
+    warnings.extend(found.unwrap_or_else(|errors| errors));
+    warnings
+}
+
+fn lint_wgsl(graph: &Graph, composed: &Composed) -> Result<Diagnostics, Diagnostics> {
+    let validated = validate::validate_every(composed)?;
+    let mut found = graph.own(documented::contradictions(composed));
+    found.extend(graph.own(validate::lint_wgsl(composed, false)));
+    let lacking = validate::lacking(composed, &validated, validate::CAPABILITIES);
+    // A target that is asked for and lacks it is an error of `compile`.
+    found.extend(lacking.map(|error| Diagnostic { severity: Severity::Warning, ..error }));
+    Ok(found)
+}
+
+fn lint_glsl(graph: &Graph, composed: &Composed) -> Result<Diagnostics, Diagnostics> {
+    let found = validate::lint_as_wgsl(composed)?;
+    let own = graph.own(documented::contradictions(composed));
+    Ok(own.into_iter().chain(graph.own(found)).collect())
 }
 
 /// Each diagnostic once, in the order of places. A module is read again for each one that reaches

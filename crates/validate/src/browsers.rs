@@ -1,23 +1,14 @@
 //! What browsers refuse in WGSL that naga accepts. It is an error where a text is written for
 //! browsers, and a warning elsewhere.
 
-use lamplight_bundle::Language;
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Code, Diagnostic, Diagnostics, Severity, codes};
 use lamplight_rules::{self as rules, Problem, Rule};
 
-use super::{Validated, on_large_stack, uniformity};
+use super::on_large_stack;
 
-/// What browsers refuse in a text, in its order. For GLSL these are warnings about derivatives.
-/// `for_browsers` makes errors of what no filter of the text makes anything else.
-pub fn lint(composed: &Composed, validated: &Validated, for_browsers: bool) -> Diagnostics {
-    match composed.language {
-        Language::Glsl => uniformity::lint(composed, validated),
-        Language::Wesl => lint_wgsl(composed, for_browsers),
-    }
-}
-
-/// The same for WGSL, which need not be validated for that.
+/// What browsers refuse in a text in WGSL, in its order. It need not be validated for that. `for_browsers`
+/// makes errors of what no filter of the text makes anything else.
 pub fn lint_wgsl(composed: &Composed, for_browsers: bool) -> Diagnostics {
     on_large_stack(|| rules::check(&composed.text))
         .iter()
@@ -26,11 +17,37 @@ pub fn lint_wgsl(composed: &Composed, for_browsers: bool) -> Diagnostics {
 }
 
 /// Whether there is anything to tell of, whatever text it is in.
-pub fn has_lints(composed: &Composed, validated: &Validated) -> bool {
-    match composed.language {
-        Language::Glsl => uniformity::has_lints(validated),
-        Language::Wesl => on_large_stack(|| !rules::check(&composed.text).is_empty()),
-    }
+pub fn has_lints(composed: &Composed) -> bool {
+    on_large_stack(|| !rules::check(&composed.text).is_empty())
+}
+
+/// The derivatives of a text in GLSL that are taken in non-uniform control flow, by its translation. GPUs
+/// give undefined results there, and GLSL allows it.
+pub fn lint_derivatives(wgsl: &Composed) -> Diagnostics {
+    let problems = on_large_stack(|| rules::check(&wgsl.text));
+    let derivatives = problems.iter().filter(|problem| problem.rule == Rule::Derivative);
+    derivatives.filter_map(|problem| derivative_of_glsl(wgsl, problem)).collect()
+}
+
+fn derivative_of_glsl(wgsl: &Composed, problem: &Problem) -> Option<Diagnostic> {
+    let place = wgsl.map.lookup(problem.place.range())?;
+    let text = wgsl.text.get(problem.place.range()).unwrap_or_default();
+    let (what, help) = match text.starts_with("textureSample") {
+        true => (
+            "a texture sampled with an implicit level",
+            "help: sample before the branch, or give the level or the gradients",
+        ),
+        false => ("a derivative", "help: take it before the branch"),
+    };
+    let message = format!("{what} in non-uniform control flow");
+    let warning = Diagnostic::warning(codes::NON_UNIFORM_DERIVATIVE, message)
+        .at(place, "other fragments of the quad may skip this branch");
+    let cause = problem.notes.first().and_then(|(cause, _)| wgsl.map.lookup(cause.range()));
+    let warning = match cause.filter(|cause| *cause != place) {
+        Some(cause) => warning.at(cause, "differs between fragments"),
+        None => warning,
+    };
+    Some(warning.note(help))
 }
 
 /// How a rule is reported.

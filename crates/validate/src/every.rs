@@ -26,6 +26,10 @@ const STOPPING: [&Code; 4] =
 /// # Errors
 /// Each mistake once, in the order of the composed text's places.
 pub fn validate_every(composed: &Composed) -> Result<Validated, Diagnostics> {
+    // The checker of GLSL goes on after a mistake.
+    if composed.language == Language::Glsl {
+        return validate_for_some(composed);
+    }
     // A large text is tried in another process, and so would be each of its parts.
     let is_small = is_small(composed).unwrap_or(false);
     let first = match if is_small { read_text(composed) } else { validate_for_some(composed) } {
@@ -173,10 +177,9 @@ fn keep_accepted(rest: String) {
     });
 }
 
-/// A key for what naga reads if only some parts are needed: the language, the stage, and the text
-/// without the other parts.
+/// A key for what naga reads if only some parts are needed: the text without the other parts.
 fn joined_parts(composed: &Composed, needed: &[bool]) -> String {
-    let mut text = format!("{:?} {:?}\n", composed.language, composed.stage);
+    let mut text = String::new();
     let mut at = 0;
     for (part, _) in composed.parts.iter().zip(needed).filter(|(_, needed)| !**needed) {
         let range = part.range.start.max(at)..part.range.end.max(at).min(composed.text.len());
@@ -210,14 +213,10 @@ fn needed_parts(composed: &Composed, index: usize) -> Vec<bool> {
 /// The text with blanks instead of what is not needed, so that places do not change.
 fn only_needed(composed: &Composed, needed: &[bool]) -> Composed {
     let mut bytes = composed.text.clone().into_bytes();
-    let left_out = || composed.parts.iter().zip(needed).filter(|(_, needed)| !**needed);
-    for (part, _) in left_out() {
+    let left_out = composed.parts.iter().zip(needed).filter(|(_, needed)| !**needed);
+    for (part, _) in left_out {
         let range = part.range.start.min(bytes.len())..part.range.end.min(bytes.len());
         bytes[range].iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
-    }
-    let main = |names: &[String]| names.iter().any(|name| name == "main");
-    if composed.language == Language::Glsl && left_out().any(|(part, _)| main(&part.names)) {
-        bytes.extend_from_slice(b"\nvoid main() {}\n");
     }
     let text = String::from_utf8(bytes).unwrap_or_default();
     Composed { text, ..composed.clone() }

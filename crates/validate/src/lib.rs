@@ -15,7 +15,6 @@ mod endless;
 mod every;
 mod foreign;
 mod gathers;
-mod glsl;
 mod guard;
 mod halves;
 mod hints;
@@ -28,16 +27,14 @@ mod report;
 mod sandbox;
 mod sizes;
 mod translated;
-mod uniformity;
 mod uses;
 mod words;
 
 pub use alias::{NamesGlobal, may_alias};
 pub use alignments::has_lost_alignments;
 pub use bitcasts::has_changed_shapes;
-pub use browsers::{has_lints, lint, lint_wgsl};
+pub use browsers::{has_lints, lint_derivatives, lint_wgsl};
 pub use every::validate_every;
-pub use glsl::{check_glsl, check_switches, parse_glsl};
 pub use guard::{catch_panics, guard, on_large_stack};
 pub use hints::glsl_words;
 pub use limits::{LIMITS, NagaLimits};
@@ -48,7 +45,8 @@ pub use operands::{
 #[doc(hidden)]
 pub use sandbox::{STAGE, SandboxJob, SandboxOutputs, try_in_sandbox};
 pub use translated::{
-    glsl_as_wgsl, keeps_rules, lint_as_wgsl, of_translation, positions_of, translate_glsl,
+    glsl_as_plain_wgsl, glsl_as_wgsl, lint_as_wgsl, of_translation, of_translations, positions_of,
+    translate_glsl,
 };
 pub use uses::{first_use, functions, makes_scalar};
 pub use words::NOT_EVERY;
@@ -66,8 +64,6 @@ use lamplight_files::limits::PLACED_EXPRESSIONS;
 /// A module that naga accepts, with what it found out about it.
 #[derive(Debug, Clone)]
 pub struct Validated {
-    /// Language of the text.
-    pub language: Language,
     /// As naga's front end read it.
     pub module: naga::Module,
     /// What naga's validator found out about it.
@@ -111,8 +107,8 @@ pub const BINDING_ARRAYS: Capabilities = Capabilities::TEXTURE_AND_SAMPLER_BINDI
 /// Parses and validates what every target has.
 ///
 /// # Errors
-/// `limit-exceeded` before naga sees the text; `glsl-not-translated` where naga would read it in
-/// another way; `wgsl-error` or `glsl-error` from its parser or validator, in the author's places;
+/// `limit-exceeded` before naga sees the text; `glsl-error` for mistakes in GLSL and `glsl-not-translated`
+/// for what WGSL has no counterpart of; `wgsl-error` from naga's parser or validator, in the author's places;
 /// `not-portable` for what only some targets have; `naga-internal` where it panicked,
 /// `naga-exhausted` where it would have ended the process.
 pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
@@ -129,12 +125,16 @@ pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
 /// # Errors
 /// As [`validate`]; `not-portable` for what no target has.
 pub fn validate_for_some(composed: &Composed) -> Result<Validated, Diagnostics> {
+    if composed.language == Language::Glsl {
+        let translated = glsl_as_wgsl(composed, Default::default())?;
+        return validate_for_some(&translated).map_err(of_translations);
+    }
     try_in_sandbox(composed, composed, || None).map_err(|error| vec![error])?;
     read_text(composed)
 }
 
-/// As [`validate_for_some`], for a text that went through the sandbox together with what is done to it
-/// afterwards.
+/// As [`validate_for_some`], for a text in WESL that went through the sandbox together with what is done to
+/// it afterwards.
 pub fn validate_unguarded(composed: &Composed) -> Result<Validated, Diagnostics> {
     limits::check_limits(composed).map_err(|error| vec![error])?;
     read_text(composed)
@@ -197,13 +197,8 @@ fn read_text(composed: &Composed) -> Result<Validated, Diagnostics> {
 /// A text in which naga computes nothing of what a `let` holds; `None` where that is the same text. It
 /// needs a large stack.
 fn with_variables(composed: &Composed) -> Option<Composed> {
-    match composed.language {
-        Language::Wesl => {
-            let text = lamplight_rules::with_variables(&composed.text)?;
-            Some(Composed { text, ..composed.clone() })
-        }
-        Language::Glsl => None,
-    }
+    let text = lamplight_rules::with_variables(&composed.text)?;
+    Some(Composed { text, ..composed.clone() })
 }
 
 /// Whether a text is small enough to be compiled without the sandbox.
@@ -215,25 +210,7 @@ pub fn is_small(composed: &Composed) -> Result<bool, Diagnostic> {
 }
 
 fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
-    match composed.language {
-        Language::Wesl => {
-            parse_wgsl(&composed.text).map_err(|error| vec![report::wgsl_error(composed, &error)])
-        }
-        Language::Glsl => {
-            let stage = composed.stage.ok_or_else(|| {
-                vec![Diagnostic::error(
-                    codes::GLSL_ERROR,
-                    "the stage of the GLSL text is not known",
-                )]
-            })?;
-            check_glsl(composed)?;
-            let module = parse_glsl(naga_stage(stage), &composed.text)
-                .map_err(|errors| report::glsl_errors(composed, &errors))?;
-            glsl::check_initial_values(composed, &module)?;
-            translated::check_rules(composed, stage)?;
-            Ok(module)
-        }
-    }
+    parse_wgsl(&composed.text).map_err(|error| vec![report::wgsl_error(composed, &error)])
 }
 
 /// Parses WGSL. Some functions of constants naga refuses, with several messages, since it does not
@@ -302,9 +279,7 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
         return Err(vec![inputs_of_compute(composed, name)]);
     }
     halves::refuse_exponents(composed, &module).map_err(|error| vec![error])?;
-    if composed.language == Language::Wesl {
-        alignments::refuse_lost_alignments(composed, &module).map_err(|error| vec![error])?;
-    }
+    alignments::refuse_lost_alignments(composed, &module).map_err(|error| vec![error])?;
     // A pointer that is placed no longer shows what else leads there.
     let original = match pointers::has_pointers_to_place(&module) {
         true => replace_by_placed(composed, &mut module).map_err(|error| vec![error])?,
@@ -314,20 +289,13 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
     let portable = info_of(&module);
     let is_portable = portable.is_ok();
     let info = portable
-        .or_else(|error| match composed.language {
-            Language::Wesl => info_for_some(&module),
-            // What goes beyond all targets is for the translator to decide.
-            Language::Glsl => Err(error),
-        })
+        .or_else(|_| info_for_some(&module))
         .map_err(|error| vec![report::validation_error(composed, &module, &error)])?;
-    if composed.language == Language::Glsl {
-        check_switches(composed, &module, &info)?;
-    }
     alias::refuse_aliases(composed, original.as_ref().unwrap_or(&module))
         .and_then(|()| atomics::refuse_atomic_values(composed, &module, &info))
         .and_then(|()| bitcasts::refuse_changed_shapes(composed, &module, &info))
         .map_err(|error| vec![error])?;
-    Ok(Validated { language: composed.language, module, info, portable: is_portable })
+    Ok(Validated { module, info, portable: is_portable })
 }
 
 /// Places the pointers of a module, and returns the module as it was; `None` where it is not valid,
@@ -433,12 +401,8 @@ fn compute_with_inputs(module: &naga::Module) -> Option<(&str, &'static str)> {
 }
 
 fn inputs_of_compute(composed: &Composed, (name, what): (&str, &str)) -> Diagnostic {
-    let code = match composed.language {
-        Language::Wesl => codes::WGSL_ERROR,
-        Language::Glsl => codes::GLSL_ERROR,
-    };
     let message = format!("the compute shader `{name}` {what}");
-    let error = Diagnostic::error(code, message).note(
+    let error = Diagnostic::error(codes::WGSL_ERROR, message).note(
         "a compute shader has built-in inputs only, and writes to buffers and textures: no stage \
          comes before it or after it",
     );

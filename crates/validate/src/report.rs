@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use naga::Module;
-use naga::front::glsl::ErrorKind;
-use naga::front::{glsl, wgsl};
+use naga::front::wgsl;
 use naga::valid::ValidationError;
 
 use super::advice::convert::with_short_types;
@@ -16,7 +15,7 @@ use super::{halves, hints, parse_wgsl, uses, words};
 use lamplight_bundle::Language;
 use lamplight_compose::{Composed, Part};
 use lamplight_diagnostic::source::Span;
-use lamplight_diagnostic::{Code, Diagnostic, Diagnostics, codes};
+use lamplight_diagnostic::{Code, Diagnostic, codes};
 use lamplight_syntax::words::is_word;
 
 /// An error of the WGSL parser, with all its labels and notes.
@@ -63,10 +62,7 @@ pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
 /// An error with the types of the author, at the author's places.
 fn mistaken(composed: &Composed, code: &'static Code, mistake: Mistake) -> Diagnostic {
     let Mistake { message, labels, notes } = mistake;
-    let worded = |text: &str| match composed.language {
-        Language::Wesl => with_short_types(text, &composed.text),
-        Language::Glsl => text.to_owned(),
-    };
+    let worded = |text: &str| with_short_types(text, &composed.text);
     let mut diagnostic = Diagnostic::error(code, worded(&message));
     for (range, label) in labels {
         diagnostic = label_or_note(diagnostic, composed, Some(range), &worded(&label));
@@ -145,82 +141,12 @@ fn quoted_after<'m>(starts: &[&str], message: &'m str) -> Option<&'m str> {
     rest.strip_suffix('`')
 }
 
-/// Every error of the GLSL parser.
-pub fn glsl_errors(composed: &Composed, errors: &glsl::ParseErrors) -> Diagnostics {
-    errors
-        .errors
-        .iter()
-        .map(|error| {
-            let message = as_sentence(&words::glsl_words(&error.kind));
-            if message == "missing entry point" {
-                return Diagnostic::error(codes::NO_ENTRY_POINT, "the file has no function `main`");
-            }
-            let range = error.meta.to_range();
-            match &error.kind {
-                ErrorKind::UnknownVariable(name) | ErrorKind::UnknownType(name) => {
-                    let error = Diagnostic::error(codes::GLSL_ERROR, message);
-                    hints::hint_unknown(
-                        label_or_note(error, composed, range.clone(), "here"),
-                        composed,
-                        name,
-                        range,
-                    )
-                }
-                ErrorKind::SemanticError(text) => called_function(composed, text, message, range),
-                _ => label_or_note(
-                    Diagnostic::error(codes::GLSL_ERROR, message),
-                    composed,
-                    range,
-                    "here",
-                ),
-            }
-        })
-        .collect()
-}
-
-/// naga reports a function that does not exist and one with other arguments in the same way. This
-/// tells them apart.
-fn called_function(
-    composed: &Composed,
-    text: &str,
-    message: String,
-    range: Option<Range<usize>>,
-) -> Diagnostic {
-    let name = text.strip_prefix("Unknown function '").and_then(|rest| rest.strip_suffix('\''));
-    let Some(name) = name else {
-        return label_or_note(
-            Diagnostic::error(codes::GLSL_ERROR, message),
-            composed,
-            range,
-            "here",
-        );
-    };
-    let is_declared =
-        composed.parts.iter().any(|part| part.names.iter().any(|known| known == name));
-    if is_declared {
-        let message = format!("`{name}` does not take these arguments");
-        let error = Diagnostic::error(codes::CALL_MISMATCH, message);
-        return hints::note_signatures(
-            label_or_note(error, composed, range, "here"),
-            composed,
-            name,
-        );
-    }
-    let error = Diagnostic::error(codes::GLSL_ERROR, format!("there is no function `{name}`"));
-    let error = label_or_note(error, composed, range.clone(), "here");
-    hints::hint_unknown(error, composed, name, range)
-}
-
 /// An error of the validator as a diagnostic, with its spans as labels.
 pub fn validation_error(
     composed: &Composed,
     module: &Module,
     error: &naga::WithSpan<ValidationError>,
 ) -> Diagnostic {
-    let fallback = match composed.language {
-        Language::Wesl => codes::WGSL_ERROR,
-        Language::Glsl => codes::GLSL_ERROR,
-    };
     // The shortest span is the most precise, so it becomes the place of the diagnostic. The span of
     // a type comes last: it is where the type was first written, which may be anywhere.
     let mut spans: Vec<_> =
@@ -229,10 +155,10 @@ pub fn validation_error(
         (*words == TYPE, range.as_ref().map_or(usize::MAX, ExactSizeIterator::len))
     });
     let sentence = words::validation_words(module, error.as_inner());
-    let code = sentence.code.unwrap_or(fallback);
+    let code = sentence.code.unwrap_or(codes::WGSL_ERROR);
     let own = sentence_labels(&sentence, &spans);
     let mut mistake = Mistake { message: sentence.message, labels: own, notes: Vec::new() };
-    if let (Some(wrong), Language::Wesl) = (&sentence.wrong, composed.language) {
+    if let Some(wrong) = &sentence.wrong {
         advice::advise_typed(&composed.text, wrong, &mut mistake);
     }
     // What the function is, its name tells.

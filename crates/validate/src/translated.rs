@@ -1,18 +1,18 @@
-//! GLSL as WGSL: our own translator reads what naga's front end does not.
+//! GLSL as WGSL: every text in GLSL is translated, and read by naga as WGSL.
 
 use std::ops::Range;
 
 use lamplight_bundle::{Language, SourceClip, Stage};
-use lamplight_compose::{Composed, Segment, SourceMap};
+use lamplight_compose::{Composed, Segment, SourceMap, parts_of_wgsl};
 use lamplight_diagnostic::source::{SourceId, Span};
-use lamplight_diagnostic::{Diagnostic, Diagnostics, Label, codes};
+use lamplight_diagnostic::{Diagnostic, Diagnostics, Label, Severity, codes};
+use lamplight_glsl::is_for_vulkan;
 use lamplight_glsl::tree::Stage as GlslStage;
 use lamplight_glsl::wgsl::{Clip, Fact, Options, Written};
-use lamplight_glsl::{check, is_for_vulkan, parse};
-use naga::ShaderStage;
 
 use super::advice::{self, Mistake};
-use super::{hints, limits, lint, on_large_stack, validate_for_some};
+use super::browsers::lint_derivatives;
+use super::{CAPABILITIES, hints, lacking, limits, on_large_stack, validate_for_some};
 
 /// How a location is found that fits the other stage.
 const OTHER_STAGE: &str =
@@ -41,12 +41,11 @@ pub fn positions_of(composed: &Composed, source: SourceClip) -> Clip {
 pub fn translate_glsl(
     composed: &Composed,
     stage: Stage,
-    clip: Clip,
+    options: Options,
 ) -> Result<Written, Diagnostics> {
     limits::check_limits(composed).map_err(|error| vec![error])?;
     let text = &composed.text;
-    let translate =
-        || lamplight_glsl::translate(text, glsl_stage(stage), COMPOSED, Options { clip });
+    let translate = || lamplight_glsl::translate(text, glsl_stage(stage), COMPOSED, options);
     on_large_stack(translate).map_err(|problems| in_authors_text(problems, composed))
 }
 
@@ -58,43 +57,33 @@ fn glsl_stage(stage: Stage) -> GlslStage {
     }
 }
 
-/// Whether a text in GLSL that naga's front end accepts keeps the rules of the language: that front
-/// end lets some mistakes pass. It needs a large stack.
-pub fn keeps_rules(text: &str, stage: ShaderStage) -> bool {
-    let stage = match stage {
-        ShaderStage::Vertex => GlslStage::Vertex,
-        ShaderStage::Fragment => GlslStage::Fragment,
-        ShaderStage::Compute => GlslStage::Compute,
-        _ => return true,
-    };
-    mistakes_of(text, stage).is_empty()
-}
-
-/// The mistakes of a text, in the author's places. It needs a large stack.
-pub fn check_rules(composed: &Composed, stage: Stage) -> Result<(), Diagnostics> {
-    let mistakes = mistakes_of(&composed.text, glsl_stage(stage));
-    if mistakes.is_empty() { Ok(()) } else { Err(in_authors_text(mistakes, composed)) }
-}
-
-/// What a text breaks of GLSL's rules. What only has no counterpart in WGSL is no mistake of it.
-fn mistakes_of(text: &str, stage: GlslStage) -> Diagnostics {
-    let parsed = parse::parse(text);
-    let checked = check::check(text, &parsed, stage, COMPOSED);
-    let problems = checked.err().unwrap_or_default();
-    problems.into_iter().filter(|problem| problem.code != codes::GLSL_NOT_TRANSLATED).collect()
-}
-
-/// The text as WGSL, with the places of its author. Its warnings are what WGSL has no word for.
+/// The text as WGSL that browsers take, with the places of its author. Its warnings are what WGSL has no
+/// word for.
 ///
 /// # Errors
 /// As [`translate_glsl`]; also for a text that is not GLSL, or whose stage is not known.
 pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnostics> {
+    as_wgsl(composed, Options { clip, filter: true })
+}
+
+/// As [`glsl_as_wgsl`], without the filter that turns the rule for derivatives off. So the rule can be
+/// looked at, and the output gets the filter where it needs it.
+///
+/// # Errors
+/// As [`glsl_as_wgsl`].
+pub fn glsl_as_plain_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnostics> {
+    as_wgsl(composed, Options { clip, filter: false })
+}
+
+fn as_wgsl(composed: &Composed, options: Options) -> Result<Composed, Diagnostics> {
     let (Language::Glsl, Some(stage)) = (composed.language, composed.stage) else {
         let message = "the stage of the GLSL text is not known";
         return Err(vec![Diagnostic::error(codes::GLSL_ERROR, message)]);
     };
-    let Written { text, map, facts } = translate_glsl(composed, stage, clip)?;
+    let Written { text, map, facts } = translate_glsl(composed, stage, options)?;
     let mut places = SourceMap::of_imports(composed.map.imports.clone());
+    // A lean text has no places at all, and neither has its translation.
+    let map = if composed.map.is_empty() { Vec::new() } else { map };
     for segment in map {
         let range = segment.at.range();
         let span = if range.is_empty() { None } else { composed.map.lookup(range) };
@@ -120,9 +109,9 @@ pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnos
     Ok(Composed {
         language: Language::Wesl,
         stage: None,
+        parts: parts_of_wgsl(&text),
         text,
         map: places,
-        parts: Vec::new(),
         reads: composed.reads.clone(),
         warnings: warnings.collect(),
         decisions: composed.decisions.clone(),
@@ -130,18 +119,25 @@ pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnos
     })
 }
 
-/// Validates a text in GLSL as WGSL, and looks for what a lint reports. This is for a text that
-/// naga's front end refused.
+/// Validates a text in GLSL by its translation, and looks for what a lint reports.
 ///
 /// # Errors
 /// As [`glsl_as_wgsl`].
 pub fn lint_as_wgsl(composed: &Composed) -> Result<Diagnostics, Diagnostics> {
-    let mut wgsl = glsl_as_wgsl(composed, Clip::Kept)?;
-    let validated = validate_for_some(&wgsl)
-        .map_err(|errors| errors.into_iter().map(of_translation).collect::<Diagnostics>())?;
+    let mut wgsl = glsl_as_plain_wgsl(composed, Clip::Kept)?;
+    let validated = validate_for_some(&wgsl).map_err(of_translations)?;
     let mut found = std::mem::take(&mut wgsl.warnings);
-    found.extend(lint(&wgsl, &validated, false));
+    found.extend(lint_derivatives(&wgsl));
+    found.extend(
+        lacking(&wgsl, &validated, CAPABILITIES)
+            .map(|error| Diagnostic { severity: Severity::Warning, ..error }),
+    );
     Ok(found)
+}
+
+/// [`of_translation`] of each error.
+pub fn of_translations(errors: Diagnostics) -> Diagnostics {
+    errors.into_iter().map(of_translation).collect()
 }
 
 /// An error about the WGSL that a text was translated to. The author did not write it: what it says

@@ -230,7 +230,6 @@ impl<'g, 's> Expander<'g, 's> {
             Some(MacroMeaning::User { definition, .. }) => {
                 return self.user(definition, token, floor, input, out);
             }
-            Some(MacroMeaning::Signed) => self.signed(token, out),
             Some(meaning) => {
                 let (symbol, setting) = self.number(meaning, &token);
                 out.push(Tok { symbol, setting, kind: TokenKind::Number, expanded: true, ..token });
@@ -249,29 +248,10 @@ impl<'g, 's> Expander<'g, 's> {
                 let line = self.modules()[token.module as usize].line(at) as i64 + self.line_shift;
                 (self.table.spellings.intern(&line.to_string()), NO_SETTING)
             }
-            MacroMeaning::File | MacroMeaning::Signed | MacroMeaning::User { .. } => {
+            MacroMeaning::File | MacroMeaning::User { .. } => {
                 (self.table.spellings.intern(&self.file_number.to_string()), NO_SETTING)
             }
         }
-    }
-
-    /// Writes a built-in variable as `int(NAME)`, unless it stands so already.
-    fn signed(&mut self, token: Tok, out: &mut Vec<Tok>) {
-        if let [.., cast, open] = out.as_slice()
-            && cast.symbol == known::INT
-            && open.symbol == known::OPEN
-        {
-            out.push(token);
-            return;
-        }
-        let made = Tok { before: NONE, after: NONE, expanded: true, ..token };
-        let (cast, kind) = (known::INT, TokenKind::Identifier);
-        out.push(Tok { symbol: cast, kind, before: token.before, ..made });
-        let (open, kind) = (known::OPEN, TokenKind::Punctuation);
-        out.push(Tok { symbol: open, kind, spaced: false, ..made });
-        out.push(Tok { painted: true, spaced: false, ..made });
-        let close = known::CLOSE;
-        out.push(Tok { symbol: close, kind, after: token.after, spaced: false, ..made });
     }
 
     /// Copies `defined NAME` or `defined(NAME)` without expanding it.

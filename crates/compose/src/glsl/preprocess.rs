@@ -213,7 +213,7 @@ impl<'g> PreprocessorState<'g, '_> {
     fn define(&mut self, definition: &'g Macro) {
         let name = self.graph.symbols.text(definition.name);
         let error = match self.expander.table.get(definition.name) {
-            None | Some(MacroMeaning::Signed) => None,
+            None => None,
             Some(MacroMeaning::User { definition: earlier, .. })
                 if same_definition(earlier, definition) =>
             {

@@ -16,8 +16,6 @@ pub enum MacroMeaning<'g> {
     Setting(u16),
     /// A fixed number.
     Number(Symbol),
-    /// A built-in variable that is an `int` in GLSL, and a `uint` to naga. It becomes `int(NAME)`.
-    Signed,
     Line,
     File,
 }
@@ -72,17 +70,6 @@ pub struct MacroTable<'g> {
     meanings: Vec<MacroMeaning<'g>>,
 }
 
-/// The variables of [`MacroMeaning::Signed`].
-const SIGNED: &[&str] = &[
-    "gl_VertexIndex",
-    "gl_InstanceIndex",
-    "gl_BaseVertex",
-    "gl_BaseInstance",
-    "gl_DrawID",
-    "gl_PrimitiveID",
-    "gl_SampleID",
-];
-
 /// In `by_symbol`: the name is not defined.
 const UNDEFINED: u32 = 0;
 
@@ -96,10 +83,6 @@ impl<'g> MacroTable<'g> {
         table.set(known::MACRO_FILE, MacroMeaning::File);
         table.number("__VERSION__", i64::from(version));
         table.number("GL_GOOGLE_include_directive", 1);
-        for name in SIGNED {
-            let name = table.spellings.intern(name);
-            table.set(name, MacroMeaning::Signed);
-        }
         if es {
             table.number("GL_ES", 1);
         } else {
@@ -166,7 +149,7 @@ impl<'g> MacroTable<'g> {
 
     /// Whether `defined` holds for a name.
     pub fn is_defined(&self, name: Symbol) -> bool {
-        self.get(name).is_some_and(|meaning| !matches!(meaning, MacroMeaning::Signed))
+        self.get(name).is_some()
     }
 
     /// Every defined name.

@@ -2,8 +2,11 @@
 //! refuses.
 
 use super::program;
+use lamplight_bundle::{Language, Stage};
+use lamplight_compose::Composed;
 use lamplight_eval::{Bounded, Branch, FindingKind, Machine, Number, Program};
 use lamplight_testing::random::Random;
+use lamplight_validate::{Validated, validate};
 use libtest_mimic::{Failed, Trial};
 
 pub fn tests() -> Vec<Trial> {
@@ -151,15 +154,9 @@ fn glsl() -> Result<(), Failed> {
             return mod(d, 0.75) + inverse(mat2(2.0, 0.0, 0.0, 4.0))[1][1];
         }
         void main() { color = block.tint * shade(vec3(0, 0, 1), vec3(uv, 0.5)); }";
-    let options = naga::front::glsl::Options::from(naga::ShaderStage::Fragment);
-    let module = naga::front::glsl::Frontend::default()
-        .parse(&options, text)
-        .map_err(|error| error.emit_to_string(text))?;
-    let info = naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        naga::valid::Capabilities::all(),
-    )
-    .validate(&module)?;
+    let composed = Composed::of_text(Language::Glsl, Some(Stage::Fragment), text.to_owned());
+    let Validated { module, info, portable: _ } =
+        validate(&composed).map_err(|errors| format!("{errors:?}"))?;
     let program = Program::new(&module, &info)?;
     let mut machine = Machine::<f64>::new(&program)?;
     let shade = program.function("shade").ok_or("shade")?;

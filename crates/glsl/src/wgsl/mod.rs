@@ -40,6 +40,9 @@ use output::{Line, Lines};
 pub struct Options {
     /// What `gl_Position` is converted from.
     pub clip: Clip,
+    /// Whether the text turns WGSL's rule for derivatives off where it takes any, since GLSL has no such
+    /// rule.
+    pub filter: bool,
 }
 
 /// The clip space of the source, if it is to be converted to WebGPU's.
@@ -279,7 +282,7 @@ impl<'s> Writer<'s> {
         if !self.bound_arrays.is_empty() {
             out.plain("enable wgpu_binding_array;");
         }
-        if self.derivatives {
+        if self.derivatives && self.options.filter {
             out.plain("diagnostic(off, derivative_uniformity);");
         }
         let preamble = std::mem::take(&mut self.preamble);

@@ -26,7 +26,7 @@ pub fn placed_vertex(stage: &Validated, place: (u32, u32)) -> Result<Validated, 
     let matrix = place_buffer(&mut module, place);
     replace_entry(&mut module, matrix).ok_or_else(|| internal("it has no position"))?;
     let info = info_for_some(&module).map_err(|error| internal(&error.to_string()))?;
-    Ok(Validated { language: stage.language, module, info, portable: stage.portable })
+    Ok(Validated { module, info, portable: stage.portable })
 }
 
 fn internal(message: &str) -> Diagnostic {

@@ -9,10 +9,7 @@ mod expression;
 mod function;
 mod global;
 mod stages;
-mod tokens;
 mod types;
-
-pub use tokens::glsl_words;
 
 use naga::common::wgsl::TypeContext;
 use naga::valid::{Capabilities, ValidationError};

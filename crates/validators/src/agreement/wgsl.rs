@@ -8,7 +8,7 @@ use naga::{
     Scalar, ScalarKind, ShaderStage, Type, TypeInner, VectorSize,
 };
 
-use lamplight_bundle::{Binding, BindingKind, BindingSlot, Language, Stage, Varying};
+use lamplight_bundle::{Binding, BindingKind, BindingSlot, Stage, Varying};
 use lamplight_emit::{keep_variables_only, reflect};
 use lamplight_validate::{Validated, guard, info_for_some, info_unchecked, parse_wgsl};
 
@@ -47,7 +47,7 @@ fn compare_module(
     };
     let mut differences =
         compare_reading(&reading, described, &SlotRules { is_at, leaves_out: false });
-    let validated = Validated { language: Language::Wesl, module, info, portable: true };
+    let validated = Validated { module, info, portable: true };
     differences.extend(interface_differences(&validated, described)?);
     Ok(differences)
 }
