@@ -92,7 +92,7 @@ fn as_wgsl(composed: &Composed, clip: Clip) -> Result<Result<String, Diagnostics
             "only GLSL is translated to WGSL; `lamplight compose` prints WESL as WGSL",
         ));
     };
-    match translate_glsl(composed, stage, Options { clip, filter: true }) {
+    match translate_glsl(composed, stage, Options { clip, keeps_rule: false }) {
         Ok(written) => {
             check_written(&written.text)?;
             Ok(Ok(with_notes(&written)))

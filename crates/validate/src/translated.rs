@@ -63,7 +63,7 @@ fn glsl_stage(stage: Stage) -> GlslStage {
 /// # Errors
 /// As [`translate_glsl`]; also for a text that is not GLSL, or whose stage is not known.
 pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnostics> {
-    as_wgsl(composed, Options { clip, filter: true })
+    as_wgsl(composed, Options { clip, keeps_rule: false })
 }
 
 /// As [`glsl_as_wgsl`], without the filter that turns the rule for derivatives off. So the rule can be
@@ -72,7 +72,7 @@ pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnos
 /// # Errors
 /// As [`glsl_as_wgsl`].
 pub fn glsl_as_plain_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnostics> {
-    as_wgsl(composed, Options { clip, filter: false })
+    as_wgsl(composed, Options { clip, keeps_rule: true })
 }
 
 fn as_wgsl(composed: &Composed, options: Options) -> Result<Composed, Diagnostics> {

@@ -48,10 +48,6 @@ impl Bindings {
 #[derive(Debug, Default)]
 pub(super) struct Uses {
     atomics: BTreeSet<(u32, Option<u32>)>,
-    /// Separate textures that are compared with.
-    compared: BTreeSet<u32>,
-    /// Samplers that compare.
-    comparing: BTreeSet<u32>,
     loaded: BTreeSet<u32>,
     stored: BTreeSet<u32>,
     /// Arrays of textures, samplers and blocks with an index that only an array of bindings takes.
@@ -301,7 +297,7 @@ impl Writer<'_> {
         let var = self.var(index);
         let Some(text) = self.opaque_type(index, opaque, uses) else { return };
         let text = self.bound_text(index, &text);
-        let depth = opaque.shadow || uses.compared.contains(&index);
+        let depth = opaque.shadow || self.compared.textures.contains(&index);
         let group = var.layout.set.unwrap_or(0);
         let element = self.declarations.get(&index).map_or(0, Vec::len) as u32;
         let (glsl, name) = self.part_name(index, path);
@@ -325,14 +321,14 @@ impl Writer<'_> {
         let var = self.var(index);
         let before = self.problems.len();
         let text = match opaque.kind {
-            OpaqueKind::Sampler if opaque.shadow || uses.comparing.contains(&index) => {
+            OpaqueKind::Sampler if opaque.shadow || self.compared.samplers.contains(&index) => {
                 Some("sampler_comparison".to_owned())
             }
             OpaqueKind::Sampler => Some("sampler".to_owned()),
             OpaqueKind::Image => self.image_type(index, opaque, uses),
             OpaqueKind::Other => None,
             _ => {
-                let depth = opaque.shadow || uses.compared.contains(&index);
+                let depth = opaque.shadow || self.compared.textures.contains(&index);
                 names::texture_type(opaque, depth)
             }
         };
@@ -441,7 +437,9 @@ impl Writer<'_> {
             let [texture, sampler] = parts.as_slice() else { return None };
             let texture = self.opaque_names(texture)?;
             let sampler = self.opaque_names(sampler)?;
-            return Some(OpaqueNames { sampler: Some(sampler.texture), depth: false, ..texture });
+            let compares = matches!(expr.ty, Type::Opaque(Opaque { shadow: true, .. }));
+            let depth = texture.depth && !compares;
+            return Some(OpaqueNames { sampler: Some(sampler.texture), depth, ..texture });
         }
         let mut path = Vec::new();
         let mut at = expr;
@@ -516,12 +514,6 @@ impl Writer<'_> {
             ExprKind::Construct(parts) => {
                 if expr.ty.is_opaque() {
                     uses.indexed.extend(parts.iter().filter_map(open_index));
-                }
-                if let (Type::Opaque(Opaque { shadow: true, .. }), [texture, sampler]) =
-                    (&expr.ty, parts.as_slice())
-                {
-                    uses.compared.extend(root_var(texture));
-                    uses.comparing.extend(root_var(sampler));
                 }
             }
             _ => {}

@@ -4,6 +4,7 @@ mod bound;
 mod builtin;
 mod call;
 mod constant;
+mod depth;
 mod entry;
 mod expr;
 mod flow;
@@ -40,9 +41,9 @@ use output::{Line, Lines};
 pub struct Options {
     /// What `gl_Position` is converted from.
     pub clip: Clip,
-    /// Whether the text turns WGSL's rule for derivatives off where it takes any, since GLSL has no such
-    /// rule.
-    pub filter: bool,
+    /// Whether WGSL's rule for derivatives stays on. GLSL has no such rule, so otherwise a text with
+    /// derivatives turns it off.
+    pub keeps_rule: bool,
 }
 
 /// The clip space of the source, if it is to be converted to WebGPU's.
@@ -81,6 +82,7 @@ pub fn write(
 ) -> Result<Written, Diagnostics> {
     let mut writer = Writer::new(shader, text, comments, source, options);
     writer.name_all();
+    writer.plan_comparisons();
     writer.plan_globals();
     writer.plan_entry();
     writer.plan_discards();
@@ -132,6 +134,8 @@ pub(crate) struct Writer<'s> {
     /// Declarations before all others.
     preamble: Vec<String>,
     entry: entry::Plan,
+    /// What is compared with.
+    compared: depth::Compared,
     /// Variables whose memory is atomic, with the member.
     atomics: BTreeSet<(u32, Option<u32>)>,
     /// The function that is written.
@@ -184,6 +188,7 @@ impl<'s> Writer<'s> {
             declarations: FxHashMap::default(),
             preamble: Vec::new(),
             entry: entry::Plan::default(),
+            compared: depth::Compared::default(),
             atomics: BTreeSet::new(),
             function: None,
             copied: FxHashMap::default(),
@@ -282,7 +287,7 @@ impl<'s> Writer<'s> {
         if !self.bound_arrays.is_empty() {
             out.plain("enable wgpu_binding_array;");
         }
-        if self.derivatives && self.options.filter {
+        if self.derivatives && !self.options.keeps_rule {
             out.plain("diagnostic(off, derivative_uniformity);");
         }
         let preamble = std::mem::take(&mut self.preamble);

@@ -95,18 +95,22 @@ impl Writer<'_> {
 
     fn opaque_param(&mut self, index: u32, opaque: &crate::types::Opaque) -> String {
         let name = self.name_local(index);
+        let is_depth = self.compared.textures.contains(&index);
         let ty = match opaque.kind {
-            OpaqueKind::Sampler if opaque.shadow => Some("sampler_comparison".to_owned()),
+            OpaqueKind::Sampler if opaque.shadow || self.compared.samplers.contains(&index) => {
+                Some("sampler_comparison".to_owned())
+            }
             OpaqueKind::Sampler => Some("sampler".to_owned()),
             OpaqueKind::Image | OpaqueKind::Other | OpaqueKind::Subpass => None,
-            _ => names::texture_type(opaque, opaque.shadow),
+            _ => names::texture_type(opaque, opaque.shadow || is_depth),
         };
         let Some(ty) = ty else {
             let at = self.var(index).at;
             self.refuse(at, format!("`{}` is no parameter in WGSL", opaque.glsl_name()));
             return String::new();
         };
-        let mut kept = OpaqueNames { texture: name.clone(), sampler: None, depth: false };
+        let depth = is_depth && opaque.kind == OpaqueKind::Texture;
+        let mut kept = OpaqueNames { texture: name.clone(), sampler: None, depth };
         let mut text = format!("{name}: {ty}");
         if opaque.kind == OpaqueKind::Combined && !opaque.multisampled {
             let sampler = self.local_name(&format!("{name}_sampler"));

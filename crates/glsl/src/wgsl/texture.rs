@@ -288,15 +288,16 @@ impl Writer<'_> {
         };
         let bias = further.next();
         if let Some(reference) = coordinate.reference {
-            let is_zero = level_exprs
-                .first()
-                .is_none_or(|expr| matches!(Self::constant_of(expr), Some(Number::Float(0.0))));
-            if !is_zero || lod == Lod::Gradient || bias.is_some() {
+            let is_zero = level_exprs.iter().all(|expr| is_zero(expr));
+            if !is_zero || bias.is_some() {
                 self.refuse(at, "WGSL compares with a depth texture at level 0 or by derivatives");
             }
             list.push(reference);
             list.extend(shift);
             return self.compared(lod, &list);
+        }
+        if names.depth {
+            return self.depth_sampled(lod, (&level_exprs, bias.is_some()), list, shift, at);
         }
         let name = self.sampling_function(lod, bias.is_some());
         self.derivatives |= matches!(name, "textureSampleBias" | "textureSample");
@@ -306,6 +307,32 @@ impl Writer<'_> {
         list.extend(zero.then(|| "0.0".to_owned()));
         list.extend(shift);
         Value::primary(format!("{name}({})", list.join(", ")), false)
+    }
+
+    /// A depth texture without a comparison. Its levels are integers in WGSL, and it has no gradients.
+    fn depth_sampled(
+        &mut self,
+        lod: Lod,
+        (levels, bias): (&[&&Expr], bool),
+        mut list: Vec<String>,
+        shift: Option<String>,
+        at: At,
+    ) -> Value {
+        let level = match levels {
+            [] if !self.is_fragment() => Some(0),
+            [level] => Self::constant_of(level).and_then(whole_level),
+            _ => None,
+        };
+        if bias || (level.is_none() && lod != Lod::Implicit) {
+            let message = "a texture that is also compared with is sampled at a constant level that is \
+                           whole, or by derivatives, in WGSL";
+            self.refuse(at, message);
+        }
+        let name = if level.is_some() { "textureSampleLevel" } else { "textureSample" };
+        self.derivatives |= level.is_none();
+        list.extend(level.map(|level| level.to_string()));
+        list.extend(shift);
+        Value::primary(format!("vec4f({name}({}), 0.0, 0.0, 1.0)", list.join(", ")), false)
     }
 
     /// Only fragment shaders take derivatives.
@@ -371,6 +398,30 @@ impl Writer<'_> {
                 }
             },
         };
-        Value::primary(format!("textureGather({component}, {})", list.join(", ")), false)
+        let list = list.join(", ");
+        let text = match (names.depth, component) {
+            (false, _) => format!("textureGather({component}, {list})"),
+            (true, 0) => format!("textureGather({list})"),
+            // What a depth texture has beside its depth.
+            (true, 1 | 2) => "vec4f()".to_owned(),
+            (true, _) => "vec4f(1.0)".to_owned(),
+        };
+        Value::primary(text, false)
+    }
+}
+
+/// Whether each number of a constant is 0.
+fn is_zero(expr: &Expr) -> bool {
+    let is_zero = |number: &Number| matches!(number, Number::Float(0.0));
+    expr.known.as_deref().is_some_and(|known| known.iter().all(is_zero))
+}
+
+/// A level as an integer.
+fn whole_level(level: Number) -> Option<u32> {
+    match level {
+        Number::Float(level) if level.fract() == 0.0 && (0.0..32.0).contains(&level) => {
+            Some(level as u32)
+        }
+        _ => None,
     }
 }
