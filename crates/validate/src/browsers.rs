@@ -2,6 +2,7 @@
 //! browsers, and a warning elsewhere.
 
 use lamplight_compose::Composed;
+use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Code, Diagnostic, Diagnostics, Severity, codes};
 use lamplight_rules::{self as rules, Problem, Rule};
 
@@ -43,7 +44,11 @@ fn derivative_of_glsl(wgsl: &Composed, problem: &Problem) -> Option<Diagnostic> 
     let warning = Diagnostic::warning(codes::NON_UNIFORM_DERIVATIVE, message)
         .at(place, "other fragments of the quad may skip this branch");
     let cause = problem.notes.first().and_then(|(cause, _)| wgsl.map.lookup(cause.range()));
-    let warning = match cause.filter(|cause| *cause != place) {
+    // A place is that of a statement, and so is its cause: the condition of a branch is in the same one.
+    let is_apart = |cause: &Span| {
+        !(cause.source == place.source && cause.range().contains(&place.range().start))
+    };
+    let warning = match cause.filter(is_apart) {
         Some(cause) => warning.at(cause, "differs between fragments"),
         None => warning,
     };
