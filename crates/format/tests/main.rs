@@ -1,0 +1,13 @@
+//! Formatting changes blanks alone, and nothing the second time.
+
+mod corpus;
+mod lexer;
+
+use std::process::ExitCode;
+
+use libtest_mimic::{Arguments, Trial};
+
+fn main() -> ExitCode {
+    let trials = vec![Trial::test("others_code", corpus::others_code)];
+    libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
+}
