@@ -34,6 +34,8 @@ pub struct Break {
     pub is_edge: bool,
     /// Where the next line begins.
     pub place: Place,
+    /// Whether it begins in column 0 all the same.
+    pub is_margin: bool,
 }
 
 /// Where a line begins.
@@ -45,14 +47,12 @@ pub enum Place {
     Outer,
     /// Where the line of the element begins.
     Element,
-    /// One level behind that.
+    /// One level behind that, and more where operands of a lower precedence stand below each other.
     Chain,
-    /// The same; but where the element stands alone in its lines between brackets.
+    /// One level behind the element; none where it stands alone in its lines between brackets.
     Trail,
     /// At a level of blocks.
     Level(u16),
-    /// In column 0.
-    Margin,
 }
 
 /// The end of a line between statements.

@@ -24,14 +24,24 @@ struct Opened {
     list: u16,
     /// The level of the line of the nearest element.
     element: u16,
+    /// The level of lines that begin with an operator of this group, and of a group in it.
+    chain: u16,
+    inner_chain: u16,
     is_list: bool,
     /// Whether the nearest element stands in lines of its own between brackets.
     is_own: bool,
 }
 
 impl Opened {
-    const OUTERMOST: Self =
-        Self { mode: Mode::Flat, list: 0, element: 0, is_list: false, is_own: false };
+    const OUTERMOST: Self = Self {
+        mode: Mode::Flat,
+        list: 0,
+        element: 0,
+        chain: 1,
+        inner_chain: 1,
+        is_list: false,
+        is_own: false,
+    };
 }
 
 pub struct Printer<'t> {
@@ -108,6 +118,7 @@ impl Printer<'_> {
             GroupKind::Element => {
                 opened.is_own = opened.is_list && self.pending.is_some();
                 (opened.element, opened.mode) = (self.level, Mode::Flat);
+                (opened.chain, opened.inner_chain) = (self.level + 1, self.level + 1);
             }
             GroupKind::List | GroupKind::Rigid => opened.list = self.level,
             GroupKind::Chain | GroupKind::Block => {}
@@ -121,6 +132,10 @@ impl Printer<'_> {
                 false if group.is_filled => Mode::Fill,
                 false => Mode::All,
             };
+        }
+        if group.kind == GroupKind::Chain {
+            opened.chain = opened.inner_chain;
+            opened.inner_chain += u16::from(opened.mode != Mode::Flat);
         }
         self.open.push(opened);
     }
@@ -143,11 +158,11 @@ impl Printer<'_> {
             Place::Outer => self.top().list,
             Place::Element => self.top().element,
             Place::Trail if self.top().is_own => self.top().element,
-            Place::Chain | Place::Trail => self.top().element + 1,
+            Place::Trail => self.top().element + 1,
+            Place::Chain => self.top().chain,
             Place::Level(level) => level,
-            Place::Margin => 0,
         };
-        self.newline(level, place.place == Place::Margin, place.is_empty);
+        self.newline(level, place.is_margin, place.is_empty);
     }
 
     /// Whether not even the space of a place fits.

@@ -38,6 +38,12 @@ impl Builder<'_> {
             } else {
                 own
             };
+            if self.is_mark(index, ";") && token.breaks == 0 && index > start {
+                // A semicolon too many.
+                self.token(index);
+                index += 1;
+                continue;
+            }
             match self.joins_condition(index) {
                 true => self.push(Op::Space),
                 false => self.line(index, shown, index == start),
@@ -217,6 +223,7 @@ impl Builder<'_> {
             is_empty: false,
             is_edge: false,
             place: Place::Level(level),
+            is_margin: false,
         }));
         self.last = None;
     }

@@ -35,24 +35,36 @@ impl Builder<'_> {
         self.chain(start, end, &operators);
     }
 
-    /// Lays out the attributes at the start of an element; the index behind them.
+    /// Lays out the attributes at the start of an element, with the comments below them; the index
+    /// behind them.
     fn attributes(&mut self, mut index: usize, end: usize) -> usize {
         while index < end && self.is_mark(index, "@") {
             let next = self.attribute_end(index, end);
             self.run(index, next);
-            index = next;
-            if index < end && self.breaks(index) > 0 && !self.tokens[index].is_comment() {
-                self.push(Op::Break(Break {
-                    is_spaced: false,
-                    is_forced: true,
-                    is_empty: false,
-                    is_edge: false,
-                    place: Place::Element,
-                }));
-                self.last = None;
+            index = self.trailing_comments(next, end);
+            self.element_break(index, end);
+            while index < end && self.tokens[index].is_comment() && self.last.is_none() {
+                self.token(index);
+                index += 1;
+                self.element_break(index, end);
             }
         }
         index
+    }
+
+    /// Ends the line before a token of an element if its author did.
+    fn element_break(&mut self, index: usize, end: usize) {
+        if index < end && self.breaks(index) > 0 {
+            self.push(Op::Break(Break {
+                is_spaced: false,
+                is_forced: true,
+                is_empty: false,
+                is_edge: false,
+                place: Place::Element,
+                is_margin: self.is_in_margin(index),
+            }));
+            self.last = None;
+        }
     }
 
     /// The index behind an attribute.
@@ -172,6 +184,7 @@ impl Builder<'_> {
             is_empty: false,
             is_edge: false,
             place,
+            is_margin: false,
         }));
         self.last = None;
     }
@@ -246,13 +259,14 @@ impl Builder<'_> {
     }
 
     fn forced_break(&mut self, index: usize) {
-        let place = if self.is_in_margin(index) { Place::Margin } else { Place::Chain };
+        let is_margin = self.is_in_margin(index);
         self.push(Op::Break(Break {
             is_spaced: false,
             is_forced: true,
             is_empty: false,
             is_edge: false,
-            place,
+            place: Place::Chain,
+            is_margin,
         }));
     }
 }

@@ -119,7 +119,7 @@ impl Builder<'_> {
             && self.language == Language::Wesl;
         let mut is_forced = self.tokens[open + 1].breaks > 0;
         let (mut is_short, mut has_nested, mut index) = (true, false, open + 1);
-        let mut is_start = true;
+        let (mut is_start, mut operands) = (true, 0);
         while index < close {
             let token = &self.tokens[index];
             let is_end = self.is_mark(index, ",") || self.is_mark(index, ";");
@@ -129,9 +129,11 @@ impl Builder<'_> {
                 || (token.is_comment() && token.breaks > 0);
             is_forced |= is_own;
             has_nested |= self.after(index) > index + 1;
+            operands = if is_end { 0 } else { operands + usize::from(!self.is_mark(index, "-")) };
             is_short &= is_end
                 || self.is_mark(index, "-")
-                || (matches!(token.kind, Kind::Number | Kind::Word)
+                || (operands == 1
+                    && matches!(token.kind, Kind::Number | Kind::Word)
                     && token.text(self.text).len() <= SHORT);
             if is_start && self.is_mark(index, "@") {
                 is_forced |= self.has_broken_attribute(index, close);
@@ -171,14 +173,15 @@ impl Builder<'_> {
         let token = &self.tokens[next];
         let is_own = token.begins_line() || (token.is_comment() && token.breaks > 0);
         let is_forced = ends || is_own || token.breaks > 0 || (is_edge && shape.is_forced);
-        let place = if self.is_in_margin(next) { Place::Margin } else { Place::Inner };
+        let is_margin = self.is_in_margin(next);
         let is_spaced = if is_edge { shape.is_padded } else { !token.is_comment() || token.spaced };
         self.push(Op::Break(Break {
             is_spaced,
             is_forced,
             is_empty: token.breaks > 1 && !is_edge,
             is_edge,
-            place,
+            place: Place::Inner,
+            is_margin,
         }));
         self.last = None;
     }
@@ -191,6 +194,7 @@ impl Builder<'_> {
             is_empty: false,
             is_edge: true,
             place,
+            is_margin: false,
         }));
     }
 }
