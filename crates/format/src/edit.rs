@@ -81,21 +81,27 @@ fn usual_end(text: &str) -> &'static str {
 pub fn blank_edits(old: &str, new: &str) -> Vec<Edit> {
     let mut edits = Vec::new();
     let (mut from, mut to) = (0, 0);
-    loop {
+    while from < old.len() || to < new.len() {
         let (old_end, new_end) = (blank_end(old, from), blank_end(new, to));
         let (before, after) = (&old[from..old_end], &new[to..new_end]);
         if before != after {
             edits.push(small_edit(from, before, after));
         }
-        let same = word_length(&old[old_end..]);
-        if same == 0
-            || old[old_end..old_end + same] != new[new_end..new_end + word_length(&new[new_end..])]
-        {
-            debug_assert!(same == 0, "formatting changes blanks alone");
-            return edits;
+        let same = same_length(&old[old_end..], &new[new_end..]);
+        if same == 0 {
+            debug_assert!(old_end == old.len() && new_end == new.len(), "only blanks change");
+            break;
         }
         (from, to) = (old_end + same, new_end + same);
     }
+    edits
+}
+
+/// Bytes of the letters that two texts begin with, up to the first blank of either.
+fn same_length(old: &str, new: &str) -> usize {
+    let pairs = old.chars().zip(new.chars());
+    let same = pairs.take_while(|(one, other)| one == other && !is_blank(*one));
+    same.map(|(letter, _)| letter.len_utf8()).sum()
 }
 
 /// An edit without the lines that both have at the start: a cursor in an empty line stays there.
@@ -107,10 +113,6 @@ fn small_edit(from: usize, before: &str, after: &str) -> Edit {
 
 fn blank_end(text: &str, start: usize) -> usize {
     text[start..].find(|letter| !is_blank(letter)).map_or(text.len(), |length| start + length)
-}
-
-fn word_length(text: &str) -> usize {
-    text.find(is_blank).unwrap_or(text.len())
 }
 
 /// The first token of a text that another text does not have in its place, by its bytes.

@@ -104,7 +104,11 @@ impl Pairing<'_> {
         let ends = |token: &Token| {
             token.ends_line() || token.is_comment() || matches!(token.text(self.text), ";" | "}")
         };
-        (first..of).rev().find(|at| ends(&tokens[*at])).map_or(first, |at| at + 1)
+        let mut at = of;
+        while at > first && !ends(&tokens[at - 1]) {
+            at = (tokens[at - 1].partner as usize).clamp(first, at - 1);
+        }
+        at
     }
 
     /// The next token that by its place in column 0 begins an item.

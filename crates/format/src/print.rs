@@ -24,9 +24,10 @@ struct Opened {
     list: u16,
     /// The level of the line of the nearest element.
     element: u16,
-    /// The level of lines that begin with an operator of this group, and of a group in it.
+    /// The level of lines that begin with an operator of this group.
     chain: u16,
-    inner_chain: u16,
+    /// Whether a line of this group has ended at one of its own places.
+    has_ended: bool,
     is_list: bool,
     /// Whether the nearest element stands in lines of its own between brackets.
     is_own: bool,
@@ -38,7 +39,7 @@ impl Opened {
         list: 0,
         element: 0,
         chain: 1,
-        inner_chain: 1,
+        has_ended: false,
         is_list: false,
         is_own: false,
     };
@@ -118,7 +119,7 @@ impl Printer<'_> {
             GroupKind::Element => {
                 opened.is_own = opened.is_list && self.pending.is_some();
                 (opened.element, opened.mode) = (self.level, Mode::Flat);
-                (opened.chain, opened.inner_chain) = (self.level + 1, self.level + 1);
+                opened.chain = self.level + 1;
             }
             GroupKind::List | GroupKind::Rigid => opened.list = self.level,
             GroupKind::Chain | GroupKind::Block => {}
@@ -133,10 +134,9 @@ impl Printer<'_> {
                 false => Mode::All,
             };
         }
-        if group.kind == GroupKind::Chain {
-            opened.chain = opened.inner_chain;
-            opened.inner_chain += u16::from(opened.mode != Mode::Flat);
-        }
+        // Operands of a line that begins with an operator stand one level behind it.
+        opened.chain += u16::from(group.kind == GroupKind::Chain && opened.has_ended);
+        opened.has_ended = false;
         self.open.push(opened);
     }
 
@@ -145,6 +145,10 @@ impl Printer<'_> {
             || match self.top().mode {
                 Mode::Flat => false,
                 Mode::Fill => place.is_edge || !self.fits(index + 1, 0) || self.is_wide(place),
+                // Behind brackets that close in this line, there is room for operands.
+                Mode::All if matches!(place.place, Place::Chain | Place::Trail) => {
+                    !self.is_closing() || !self.fits(index + 1, 0)
+                }
                 Mode::All => true,
             };
         if !ends {
@@ -152,6 +156,9 @@ impl Printer<'_> {
                 self.write(" ");
             }
             return;
+        }
+        if let Some(group) = self.open.last_mut() {
+            group.has_ended |= matches!(place.place, Place::Chain);
         }
         let level = match place.place {
             Place::Inner => self.top().list + 1,
@@ -163,6 +170,15 @@ impl Printer<'_> {
             Place::Level(level) => level,
         };
         self.newline(level, place.is_margin, place.is_empty);
+    }
+
+    /// Whether the line has nothing but brackets that close.
+    fn is_closing(&self) -> bool {
+        let line = self.out.rfind('\n').map_or(0, |at| at + 1);
+        let line = self.out[line..].trim_start();
+        self.pending.is_none()
+            && !line.is_empty()
+            && line.bytes().all(|byte| matches!(byte, b')' | b']'))
     }
 
     /// Whether not even the space of a place fits.

@@ -118,14 +118,18 @@ pub fn is_spaced(left: Placed<'_>, right: Placed<'_>, text: &str) -> bool {
     }
     let wanted = wants_space(left, right, before, after);
     // Two tokens never become one, and a number none with a point.
-    wanted || (author && may_join(left.token, right.token))
+    wanted || (author && may_join(left.token, right.token, before, after))
 }
 
-fn may_join(left: &Token, right: &Token) -> bool {
-    let is_word = |kind: Kind| matches!(kind, Kind::Word | Kind::Number);
+fn may_join(left: &Token, right: &Token, before: &str, after: &str) -> bool {
+    let is_operator = |kind: Kind, word: &str| match kind {
+        Kind::TemplateClose => true,
+        _ => kind == Kind::Mark && !word.starts_with(['(', ')', '[', ']', '{', '}', ',', ';', '@']),
+    };
     match (left.kind, right.kind) {
-        (Kind::Number, _) | (_, Kind::Number) => true,
-        (left, right) => is_word(left) == is_word(right),
+        (Kind::Number, _) => after.starts_with('.'),
+        (_, Kind::Number) => before.ends_with('.'),
+        (left, right) => is_operator(left, before) && is_operator(right, after),
     }
 }
 

@@ -215,10 +215,17 @@ fn logical_line_end(text: &str, at: usize) -> usize {
 }
 
 fn block_comment_end(text: &str, at: usize, language: Language) -> usize {
-    match language {
-        Language::Wesl => at + block_comment(&text[at..]).0,
-        Language::Glsl => text[at + 2..].find("*/").map_or(text.len(), |end| at + 2 + end + 2),
-    }
+    let (end, is_closed) = match language {
+        Language::Wesl => {
+            let (length, is_closed) = block_comment(&text[at..]);
+            (at + length, is_closed)
+        }
+        Language::Glsl => match text[at + 2..].find("*/") {
+            Some(end) => (at + 2 + end + 2, true),
+            None => (text.len(), false),
+        },
+    };
+    if is_closed { end } else { at + text[at..end].trim_end_matches(is_blank).len() }
 }
 
 /// The end of a line of the preprocessor. Comments that go on below belong to it, and so do the

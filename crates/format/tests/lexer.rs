@@ -36,11 +36,13 @@ pub fn tokens_of(text: &str, language: Language) -> Vec<String> {
         {
             let lines: Vec<&str> =
                 token.split('\n').map(|line| line.trim_matches(is_blank)).collect();
-            token = lines.join("\n");
+            token = lines.join("\n").trim_end().to_owned();
         }
-        // An angle bracket or `=` that stands close to another one may be one token with it.
-        let is_angle = |token: &String| token.starts_with(['<', '>']);
-        if end == at && tokens.last().is_some_and(is_angle) && token.starts_with(['<', '>', '=']) {
+        // Two that stand close to each other may be one token.
+        let last = tokens.last().map_or("", String::as_str);
+        let is_angle = last.starts_with('<') && token.starts_with(['<', '='])
+            || last.starts_with('>') && token.starts_with(['>', '=']);
+        if end == at && is_angle {
             token.push('~');
         }
         tokens.push(token);

@@ -2,12 +2,16 @@
 
 mod corpus;
 mod lexer;
+mod random;
 
 use std::process::ExitCode;
 
 use libtest_mimic::{Arguments, Trial};
 
 fn main() -> ExitCode {
-    let trials = vec![Trial::test("others_code", corpus::others_code)];
+    let trials = vec![
+        Trial::test("others_code", corpus::others_code),
+        Trial::test("random_texts", random::random_texts),
+    ];
     libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
 }

@@ -23,7 +23,7 @@ impl Builder<'_> {
         let (mut index, mut own) = (start, level);
         while index < end {
             let is_label = self.is_label(index);
-            if is_label {
+            if is_label || self.tokens[index].kind == Kind::Raw {
                 own = level;
             }
             let token = &self.tokens[index];
@@ -145,8 +145,13 @@ impl Builder<'_> {
             at - self.text[..at].rfind('\n').map_or(0, |line| line + 1)
         };
         let head = (0..=start).rev().find(|at| *at == 0 || self.breaks(*at) > 0).unwrap_or(0);
-        let first = (open + 1..close)
-            .find(|at| self.breaks(*at) > 0 && self.tokens[*at].kind != Kind::Directive);
+        // The first token that begins a line with code of the block.
+        let is_passed = |at: &usize| {
+            let token = &self.tokens[*at];
+            token.kind == Kind::Directive || (token.is_comment() && token.breaks == 0)
+        };
+        let first = (open + 1..close).find(|at| !is_passed(at));
+        let first = first.filter(|at| self.breaks(*at) > 0);
         let is_flat = is_margin
             || (joins && self.last_condition.is_flat)
             || first
@@ -179,7 +184,7 @@ impl Builder<'_> {
             self.token(open);
             self.token(close);
         } else if self.is_one_line(open, close) {
-            self.one_line(open, close, level, inner);
+            self.one_line(open, close, inner, (level, is_margin));
         } else {
             self.token(open);
             let first = self.trailing_comments(open + 1, close);
@@ -203,27 +208,29 @@ impl Builder<'_> {
             .contains('\n')
     }
 
-    fn one_line(&mut self, open: usize, close: usize, level: u16, inner: u16) {
+    /// Lays out a block that may stand in one line. `outer` says where its last brace begins its line
+    /// otherwise.
+    fn one_line(&mut self, open: usize, close: usize, inner: u16, outer: (u16, bool)) {
         self.open(GroupKind::Block, false, false);
         self.token(open);
         let mut index = open + 1;
         while index < close {
-            self.level_break(inner);
+            self.level_break(inner, self.is_in_margin(index));
             index = self.statement(index, close, inner);
         }
-        self.level_break(level);
+        self.level_break(outer.0, outer.1);
         self.token(close);
         self.close();
     }
 
-    pub(super) fn level_break(&mut self, level: u16) {
+    pub(super) fn level_break(&mut self, level: u16, is_margin: bool) {
         self.push(Op::Break(Break {
             is_spaced: true,
             is_forced: false,
             is_empty: false,
             is_edge: false,
             place: Place::Level(level),
-            is_margin: false,
+            is_margin,
         }));
         self.last = None;
     }
@@ -233,7 +240,7 @@ impl Builder<'_> {
         let mut index = start;
         while index < end {
             let token = &self.tokens[index];
-            if index > start && self.is_cut(start, index) {
+            if index > start && (token.kind == Kind::Raw || self.is_cut(start, index)) {
                 return Extent::Open(index);
             }
             if token.kind == Kind::Mark {

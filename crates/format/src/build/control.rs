@@ -5,6 +5,7 @@ use lamplight_bundle::Language;
 use super::Builder;
 use super::block::Extent;
 use crate::op::{GroupKind, Op};
+use crate::token::Kind;
 
 /// Tokens behind the block of a structure in GLSL, before its semicolon.
 const TAIL: usize = 32;
@@ -205,6 +206,9 @@ impl Builder<'_> {
         }
         // Comments, and lines of the preprocessor, before the statement.
         while index < end && (self.tokens[index].is_comment() || self.tokens[index].begins_line()) {
+            if self.tokens[index].kind == Kind::Raw {
+                return index;
+            }
             self.line(index, level + 1, true);
             self.token(index);
             index += 1;
@@ -243,7 +247,7 @@ impl Builder<'_> {
         self.open(GroupKind::Block, false, false);
         let mut index = body;
         while index < stop {
-            self.level_break(level + 1);
+            self.level_break(level + 1, false);
             index = self.statement(index, stop, level + 1);
         }
         self.close();
