@@ -25,7 +25,7 @@ mod token;
 
 pub use edit::{Edit, apply_edits};
 pub use lamplight_bundle::Language;
-pub use options::{Braces, Indent, LineEnds, Margin, Options, TABLE, read_options};
+pub use options::{Braces, Indent, LineEnds, Margin, Options, TABLE, options_for, read_options};
 
 use std::ops::Range;
 

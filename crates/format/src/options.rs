@@ -1,7 +1,9 @@
 //! What a formatted text looks like: the settings of the formatter, and the table of a manifest
 //! that has them.
 
-use lamplight_diagnostic::source::{SourceId, Span};
+use std::path::Path;
+
+use lamplight_diagnostic::source::{SourceId, SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -109,7 +111,34 @@ const MARGINS: [(&str, Margin); 3] =
 const LINE_ENDS: [(&str, LineEnds); 3] =
     [("keep", LineEnds::Keep), ("unix", LineEnds::Unix), ("windows", LineEnds::Windows)];
 
-/// Reads the table `[format]` of a manifest.
+/// Manifests that may have the table. The first one has precedence.
+const MANIFESTS: [&str; 2] = ["lamplight.toml", "wesl.toml"];
+
+/// The options for a file: those of the nearest manifest in its folder or above that has a table
+/// `[format]`, and `base` for keys that it does not have. `read` reads a manifest, if it is there.
+///
+/// # Errors
+/// Those of [`read_options`].
+pub fn options_for(
+    file: &Path,
+    base: Options,
+    sources: &mut SourceSet,
+    read: impl Fn(&Path) -> Option<String>,
+) -> Result<Options, Diagnostics> {
+    let folders = file.ancestors().skip(1);
+    let places = folders.flat_map(|folder| MANIFESTS.map(|name| folder.join(name)));
+    for place in places {
+        let Some(text) = read(&place) else { continue };
+        let id = sources.add(place.display().to_string(), text);
+        let text = sources.get(id).text.to_string();
+        if let Some(options) = read_options(&text, id, base)? {
+            return Ok(options);
+        }
+    }
+    Ok(base)
+}
+
+/// Reads the table `[format]` of a manifest; `base` has the values of keys that it does not have.
 ///
 /// | key | values | default |
 /// |---|---|---|
@@ -123,14 +152,18 @@ const LINE_ENDS: [(&str, LineEnds); 3] =
 /// # Errors
 /// For keys and values that are not in this table. A text that is not TOML has no table: whoever
 /// reads the rest of the manifest reports that.
-pub fn read_options(text: &str, source: SourceId) -> Result<Option<Options>, Diagnostics> {
+pub fn read_options(
+    text: &str,
+    source: SourceId,
+    base: Options,
+) -> Result<Option<Options>, Diagnostics> {
     let Ok(document) = DeTable::parse(text) else { return Ok(None) };
     let Some(found) = document.get_ref().get(TABLE) else { return Ok(None) };
     let table = Place { source, key: TABLE, value: found };
     let DeValue::Table(entries) = found.get_ref() else {
         return Err(vec![table.wrong("a table")]);
     };
-    let (mut options, mut errors) = (Options::default(), Vec::new());
+    let (mut options, mut errors) = (base, Vec::new());
     for (key, value) in entries {
         let place = Place { source, key: key.get_ref(), value };
         errors.extend(read_entry(&mut options, &place, key.span()).err());

@@ -36,7 +36,8 @@ pub fn others_code() -> Result<(), Failed> {
     let mut sources = SourceSet::default();
     let table = std::env::var("LAMPLIGHT_FORMAT_OPTIONS").unwrap_or_default();
     let id = sources.add("options", format!("[format]\n{table}"));
-    let options = read_options(&sources.get(id).text, id).map_err(|found| format!("{found:?}"))?;
+    let options = read_options(&sources.get(id).text, id, Options::default())
+        .map_err(|found| format!("{found:?}"))?;
     let (mut mistakes, mut differences) = (Vec::new(), String::new());
     for folder in folders.split(':').filter(|folder| !folder.is_empty()) {
         let mut counts = Counts::default();

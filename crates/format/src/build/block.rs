@@ -135,7 +135,10 @@ impl Builder<'_> {
     /// A block under a condition of WESL, whose lines may stand where they would without it.
     fn condition_block(&mut self, start: usize, open: usize, level: u16) -> usize {
         let close = self.tokens[open].partner as usize;
-        let joins = start > 0 && self.breaks(start) == 0 && self.is_mark(start - 1, "}");
+        let joins = start > 0
+            && self.word(start + 1) != "if"
+            && self.breaks(start) == 0
+            && self.is_mark(start - 1, "}");
         let is_margin = match joins {
             true => self.last_condition.is_margin,
             false => level > 0 && self.is_in_margin(start),

@@ -264,7 +264,8 @@ impl Builder<'_> {
                 && !self.is_mark(index, "@")
                 && !(self.is_word(index) && self.is_control(index));
             let Extent::Semicolon(at) = self.extent(index, end) else { break };
-            if !is_simple || (index + 1..=at).any(|inner| self.breaks(inner) > 0) {
+            let bytes = self.tokens[index].start as usize..self.tokens[at].end as usize;
+            if !is_simple || self.text[bytes].contains('\n') {
                 break;
             }
             index = at + 1;
