@@ -20,7 +20,7 @@ use crate::source::{Disk, Files, SourceSet};
 use crate::{input, output};
 
 /// Format shaders: only blanks and line breaks change. `[format]` in `lamplight.toml` or
-/// `wesl.toml` has the settings.
+/// `wesl.toml` has the options.
 #[derive(Args)]
 pub struct Arguments {
     /// Shaders, or folders whose shaders are all formatted.
@@ -154,7 +154,7 @@ fn language_of(file: &Path, arguments: &Arguments) -> Result<Language, Failure> 
     }
 }
 
-/// The settings for a file: those of the nearest manifest.
+/// The options for a file: those of the nearest manifest.
 fn options_of(file: &Path, sources: &mut SourceSet) -> Result<Options, Failure> {
     let file = std::path::absolute(file)?;
     let read =

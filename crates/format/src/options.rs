@@ -1,4 +1,4 @@
-//! What a formatted text looks like: the settings of the formatter, and the table of a manifest
+//! What a formatted text looks like: the options of the formatter, and the table of a manifest
 //! that has them.
 
 use std::path::Path;

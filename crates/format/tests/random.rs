@@ -421,7 +421,7 @@ pub fn random_texts() -> Result<(), Failed> {
         std::env::var(name).ok().and_then(|number| number.parse().ok()).unwrap_or(usual)
     };
     let first = wanted("LAMPLIGHT_FORMAT_SEED", 1);
-    for seed in first..first + wanted("LAMPLIGHT_FORMAT_PROGRAMS", 2000) {
+    for seed in first..first + wanted("LAMPLIGHT_FORMAT_PROGRAMS", 600) {
         let mut random = Random(seed);
         let language = [Language::Wesl, Language::Glsl][random.below(2)];
         let is_soup = random.below(3) == 0;

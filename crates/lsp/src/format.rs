@@ -21,7 +21,7 @@ pub fn format_document(
     parameters: &Value,
 ) -> Result<Value, RequestError> {
     let document = server.document(parameters)?;
-    let (language, options) = settings_of(document, parameters)?;
+    let (language, options) = formatting_of(document, parameters)?;
     let edits = lamplight_format::format_edits(&document.text, language, &options);
     Ok(edits_as_json(&document.text, &edits))
 }
@@ -32,7 +32,7 @@ pub fn format_range(
     parameters: &Value,
 ) -> Result<Value, RequestError> {
     let document = server.document(parameters)?;
-    let (language, options) = settings_of(document, parameters)?;
+    let (language, options) = formatting_of(document, parameters)?;
     let byte = |end: &str| {
         let position = parameters.get("range").and_then(|range| range.get(end));
         position.and_then(|position| place::byte_of_position(&document.text, position))
@@ -49,7 +49,7 @@ pub fn format_typed(
     parameters: &Value,
 ) -> Result<Value, RequestError> {
     let (document, byte) = server.requested_place(parameters)?;
-    let (language, options) = settings_of(document, parameters)?;
+    let (language, options) = formatting_of(document, parameters)?;
     let edits = lamplight_format::format_typed(&document.text, byte, language, &options);
     Ok(edits_as_json(&document.text, &edits))
 }
@@ -63,7 +63,7 @@ fn edits_as_json(text: &str, edits: &[Edit]) -> Value {
 
 /// The language of a document, and how it is formatted: as the nearest manifest says, and for what
 /// that leaves open, as the editor says.
-fn settings_of(
+fn formatting_of(
     document: &Document,
     parameters: &Value,
 ) -> Result<(Language, Options), RequestError> {
@@ -74,7 +74,7 @@ fn settings_of(
         lamplight_format::options_for(&file, base, &mut SourceSet::default(), read_manifest);
     let wrong = |found: Vec<lamplight_diagnostic::Diagnostic>| {
         let message = found.first().map_or_else(String::new, |first| first.message.clone());
-        RequestError::Refused(format!("the settings of the formatter are wrong: {message}"))
+        RequestError::Refused(format!("the options of the formatter are wrong: {message}"))
     };
     Ok((language, found.map_err(wrong)?))
 }

@@ -4,7 +4,11 @@ use lamplight_bundle::Language;
 
 use super::{Builder, ConditionStyle};
 use crate::op::{Break, GroupKind, Op, Place};
+use crate::options::Braces;
 use crate::token::Kind;
+
+/// After so many comments in a row, it is not looked for a label.
+const COMMENTS: usize = 64;
 
 /// How far a statement goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,7 +62,7 @@ impl Builder<'_> {
 
     /// Whether a comment in the column of a label stands before one.
     fn is_before_label(&self, index: usize, end: usize) -> bool {
-        let next = (index..end).find(|at| !self.tokens[*at].is_comment());
+        let next = (index..end).take(COMMENTS).find(|at| !self.tokens[*at].is_comment());
         next.is_none_or(|at| self.is_label(at))
     }
 
@@ -147,18 +151,19 @@ impl Builder<'_> {
             let at = self.tokens[index].start as usize;
             at - self.text[..at].rfind('\n').map_or(0, |line| line + 1)
         };
-        let head = (0..=start).rev().find(|at| *at == 0 || self.breaks(*at) > 0).unwrap_or(0);
         // The first token that begins a line with code of the block.
         let is_passed = |at: &usize| {
             let token = &self.tokens[*at];
             token.kind == Kind::Directive || (token.is_comment() && token.breaks == 0)
         };
         let first = (open + 1..close).find(|at| !is_passed(at));
-        let first = first.filter(|at| self.breaks(*at) > 0);
-        let is_flat = is_margin
-            || (joins && self.last_condition.is_flat)
-            || first
-                .is_some_and(|first| !self.is_in_margin(first) && column(first) <= column(head));
+        let first = first.filter(|at| self.breaks(*at) > 0 && !self.is_in_margin(*at));
+        let is_outside = |first: usize| {
+            let head = (0..=start).rev().find(|at| *at == 0 || self.breaks(*at) > 0);
+            column(first) <= column(head.unwrap_or(0))
+        };
+        let is_flat =
+            is_margin || (joins && self.last_condition.is_flat) || first.is_some_and(is_outside);
         let below = self.is_brace_below(open);
         match below {
             true => self.plain_line(level, is_margin),
@@ -201,14 +206,16 @@ impl Builder<'_> {
 
     /// Whether the author wrote a block in one line that has neither blocks nor labels.
     fn is_one_line(&self, open: usize, close: usize) -> bool {
-        (open + 1..=close).all(|at| {
-            let token = &self.tokens[at];
-            token.breaks == 0
-                && !token.ends_line()
-                && !self.is_mark(at, "{")
-                && !(token.kind == Kind::Word && self.is_control(at))
-        }) && !self.text[self.tokens[open].start as usize..self.tokens[close].end as usize]
-            .contains('\n')
+        self.options.braces != Braces::NextLine
+            && (open + 1..=close).all(|at| {
+                let token = &self.tokens[at];
+                token.breaks == 0
+                    && !token.ends_line()
+                    && !self.is_mark(at, "{")
+                    && !(token.kind == Kind::Word && self.is_control(at))
+            })
+            && !self.text[self.tokens[open].start as usize..self.tokens[close].end as usize]
+                .contains('\n')
     }
 
     /// Lays out a block that may stand in one line. `outer` says where its last brace begins its line

@@ -50,7 +50,7 @@ impl Builder<'_> {
                 return at;
             }
             Extent::Block(open) => {
-                self.header(start, open);
+                self.element(start, open);
                 self.body(open, level)
             }
         };
@@ -122,11 +122,6 @@ impl Builder<'_> {
         self.semicolon(next, end)
     }
 
-    /// What stands before the block of a statement.
-    fn header(&mut self, start: usize, open: usize) {
-        self.element(start, open);
-    }
-
     /// A block behind a header.
     fn body(&mut self, open: usize, level: u16) -> usize {
         match self.is_brace_below(open) {
@@ -186,7 +181,7 @@ impl Builder<'_> {
                 Extent::Semicolon(_) | Extent::Open(_) => return self.simple(start, end, level),
             },
         };
-        self.header(start, body.min(end));
+        self.element(start, body.min(end));
         let body = self.trailing_comments(body, end);
         if body >= end {
             return end;

@@ -135,11 +135,11 @@ impl Builder<'_> {
             let index = operators[at].index;
             self.chain(from, index, &operators[first..at]);
             if lowest == COMMA {
-                self.separator(index);
+                self.token(index);
             } else {
                 self.operator(index, end, trails);
             }
-            let next = self.operator_end(index, end);
+            let next = self.trailing_comments(index + 1, end);
             (from, first) = (next, at + 1);
             if next < end && trails && !self.tokens[next].is_comment() {
                 self.chain_break(self.breaks(next) > 0, Place::Trail);
@@ -147,11 +147,6 @@ impl Builder<'_> {
         }
         self.chain(from, end, &operators[first..]);
         self.close();
-    }
-
-    /// The index behind an operator and the comments behind it in its line.
-    fn operator_end(&mut self, index: usize, end: usize) -> usize {
-        self.trailing_comments(index + 1, end)
     }
 
     fn operator(&mut self, index: usize, end: usize, trails: bool) {
@@ -172,11 +167,6 @@ impl Builder<'_> {
         }
     }
 
-    /// A comma behind an operand.
-    fn separator(&mut self, index: usize) {
-        self.token(index);
-    }
-
     fn chain_break(&mut self, is_forced: bool, place: Place) {
         self.push(Op::Break(Break {
             is_spaced: true,
@@ -189,18 +179,24 @@ impl Builder<'_> {
         self.last = None;
     }
 
+    /// Lays out operands of assignments, of which an expression has one as a rule.
     fn assignment(&mut self, start: usize, end: usize, operators: &[Operator]) {
-        let at = operators.iter().position(|one| one.precedence == ASSIGNMENT).unwrap_or(0);
-        let index = operators[at].index;
-        self.chain(start, index, &operators[..at]);
-        self.push(Op::Space);
-        self.token(index);
-        let next = self.operator_end(index, end);
-        if next < end && !self.tokens[next].is_comment() {
-            self.push(Op::Soft { is_forced: self.breaks(next) > 0 });
-            self.last = None;
+        let (mut from, mut first) = (start, 0);
+        for (at, Operator { index, precedence }) in operators.iter().copied().enumerate() {
+            if precedence != ASSIGNMENT {
+                continue;
+            }
+            self.chain(from, index, &operators[first..at]);
+            self.push(Op::Space);
+            self.token(index);
+            let next = self.trailing_comments(index + 1, end);
+            if next < end && !self.tokens[next].is_comment() {
+                self.push(Op::Soft { is_forced: self.breaks(next) > 0 });
+                self.last = None;
+            }
+            (from, first) = (next, at + 1);
         }
-        self.chain(next, end, &operators[at + 1..]);
+        self.chain(from, end, &operators[first..]);
     }
 
     /// Lays out tokens without operators between operands outside of brackets.

@@ -177,7 +177,8 @@ impl Builder<'_> {
             || match self.options.braces {
                 Braces::Keep => self.breaks(index) > 0,
                 Braces::SameLine => false,
-                Braces::NextLine => true,
+                // Nothing is between the braces of an empty block.
+                Braces::NextLine => self.after(index) > index + 2 || self.breaks(index) > 0,
             }
     }
 }
