@@ -162,8 +162,11 @@ impl Builder<'_> {
             let head = (0..=start).rev().find(|at| *at == 0 || self.breaks(*at) > 0);
             column(first) <= column(head.unwrap_or(0))
         };
-        let is_flat =
-            is_margin || (joins && self.last_condition.is_flat) || first.is_some_and(is_outside);
+        let is_flat = is_margin
+            || match joins {
+                true => self.last_condition.is_flat,
+                false => first.is_some_and(is_outside),
+            };
         let below = self.is_brace_below(open);
         match below {
             true => self.plain_line(level, is_margin),
