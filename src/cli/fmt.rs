@@ -107,7 +107,7 @@ fn format_file(file: &Path, arguments: &Arguments, outcome: &mut Outcome) -> Res
         }
     };
     let id = outcome.sources.add(file.display().to_string(), text.clone());
-    let formatted = format::format(&text, id, language, &options);
+    let formatted = format::format_text(&text, id, language, &options);
     outcome.errors.extend(formatted.diagnostics);
     if formatted.text == text {
         return Ok(());
@@ -130,7 +130,7 @@ fn format_stdin(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failu
     let options = options_of(file, &mut sources)?;
     let text = read_stream(Path::new(STANDARD_INPUT))?;
     let id = sources.add(file.display().to_string(), text.clone());
-    let formatted = format::format(&text, id, language, &options);
+    let formatted = format::format_text(&text, id, language, &options);
     stdout().write_all(formatted.text.as_bytes())?;
     print_warnings(&sources, &formatted.diagnostics, form);
     match formatted.diagnostics.is_empty() {

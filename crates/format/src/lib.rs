@@ -46,7 +46,12 @@ pub struct Formatted {
 }
 
 /// Formats a text. `source` is the text for the places of diagnostics.
-pub fn format(text: &str, source: SourceId, language: Language, options: &Options) -> Formatted {
+pub fn format_text(
+    text: &str,
+    source: SourceId,
+    language: Language,
+    options: &Options,
+) -> Formatted {
     let lines = edit::unix_lines(text);
     let laid = lay_out(&lines, language, options);
     let place = |start: u32, end: u32| {

@@ -34,7 +34,7 @@ pub fn ends_operand(token: &Token, text: &str) -> bool {
 }
 
 /// The precedence of an operator between two operands, from 3 for `||` on. Assignments have 1.
-pub fn precedence(operator: &str) -> Option<u8> {
+pub fn precedence_of(operator: &str) -> Option<u8> {
     Some(match operator {
         "=" | "+=" | "-=" | "*=" | "/=" | "%=" | "&=" | "|=" | "^=" | "<<=" | ">>=" => 1,
         "?" => 2,

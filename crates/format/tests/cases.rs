@@ -6,7 +6,7 @@ use std::path::Path;
 
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_format::{
-    Language, Options, apply_edits, format, format_edits, format_range, format_typed,
+    Language, Options, apply_edits, format_edits, format_range, format_text, format_typed,
 };
 use libtest_mimic::{Failed, Trial};
 
@@ -29,7 +29,7 @@ pub fn case_trials() -> Vec<Trial> {
 fn formatted(text: &str, language: Language) -> String {
     let mut sources = SourceSet::default();
     let id = sources.add("text", text.to_owned());
-    format(text, id, language, &Options::default()).text
+    format_text(text, id, language, &Options::default()).text
 }
 
 fn check_case(name: &str) -> Result<(), Failed> {

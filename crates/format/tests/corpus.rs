@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use lamplight_diagnostic::source::SourceSet;
-use lamplight_format::{Language, Options, format, read_options};
+use lamplight_format::{Language, Options, format_text, read_options};
 use libtest_mimic::Failed;
 use similar::{ChangeTag, TextDiff};
 
@@ -85,7 +85,7 @@ fn try_file(
     let mut sources = SourceSet::default();
     let id = sources.add("text", text.to_owned());
     let start = Instant::now();
-    let once = format(text, id, language, options);
+    let once = format_text(text, id, language, options);
     counts.seconds += start.elapsed().as_secs_f64();
     let changed = show_changes(file, text, &once.text, differences);
     counts.files += 1;
@@ -101,7 +101,7 @@ fn try_file(
     if before.len() != after.len() {
         return Some(format!("{}: {} tokens of {}", file.display(), after.len(), before.len()));
     }
-    let twice = format(&once.text, id, language, options).text;
+    let twice = format_text(&once.text, id, language, options).text;
     let differs = once.text.lines().zip(twice.lines()).find(|(one, other)| one != other);
     (twice != once.text).then(|| format!("{}: the second time, {differs:?}", file.display()))
 }

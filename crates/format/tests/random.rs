@@ -2,8 +2,8 @@
 
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_format::{
-    Braces, Indent, Language, LineEnds, Margin, Options, apply_edits, format, format_edits,
-    format_range, format_typed,
+    Braces, Indent, Language, LineEnds, Margin, Options, apply_edits, format_edits, format_range,
+    format_text, format_typed,
 };
 use lamplight_testing::random::Random;
 use libtest_mimic::Failed;
@@ -367,7 +367,7 @@ fn some_options(random: &mut Random) -> Options {
 fn check_text(text: &str, language: Language, options: &Options, at: usize) -> Result<(), String> {
     let mut sources = SourceSet::default();
     let id = sources.add("text", text.to_owned());
-    let once = format(text, id, language, options).text;
+    let once = format_text(text, id, language, options).text;
     let (before, after) = (tokens_of(text, language), tokens_of(&once, language));
     if let Some((old, new)) = before.iter().zip(&after).find(|(old, new)| old != new) {
         return Err(format!("`{old}` became `{new}`"));
@@ -375,7 +375,7 @@ fn check_text(text: &str, language: Language, options: &Options, at: usize) -> R
     if before.len() != after.len() {
         return Err(format!("{} tokens of {}", after.len(), before.len()));
     }
-    let twice = format(&once, id, language, options).text;
+    let twice = format_text(&once, id, language, options).text;
     if twice != once {
         let diff = TextDiff::from_lines(&once, &twice);
         return Err(format!("the second time:\n{}", diff.unified_diff().context_radius(4)));

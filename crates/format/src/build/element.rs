@@ -2,7 +2,7 @@
 
 use super::Builder;
 use crate::op::{Break, GroupKind, Op, Place};
-use crate::space::{Placed, Role, ends_operand, is_spaced, precedence, role_of};
+use crate::space::{Placed, Role, ends_operand, is_spaced, precedence_of, role_of};
 use crate::token::Kind;
 
 /// An operator between operands, by its index, with its precedence. A comma has 0.
@@ -96,7 +96,7 @@ impl Builder<'_> {
                         Some(CHOICE)
                     }
                     _ if !is_operand => None,
-                    _ => precedence(word),
+                    _ => precedence_of(word),
                 };
                 choices += usize::from(word == "?" && precedence.is_some());
                 found.extend(precedence.map(|precedence| Operator { index, precedence }));
