@@ -1,5 +1,5 @@
 //! Writes a layout as text. A group stands in one line if it fits, up to the first place where a
-//! line ends in any case. Only [`Printer::fits`] looks ahead, and never further than a line's width.
+//! line ends in any case. Only [`Printer::fits`] looks ahead, never further than a line is wide.
 
 use crate::op::{Break, Group, GroupKind, Line, Op, Place};
 use crate::options::{Indent, Options};

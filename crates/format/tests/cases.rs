@@ -1,5 +1,5 @@
-//! Texts before and after: `cases/NAME.in.EXT` and `cases/NAME.EXT`. With `LAMPLIGHT_FORMAT_RECORD`,
-//! the latter are written.
+//! Texts before and after: `cases/NAME.in.EXT` and `cases/NAME.EXT`. With
+//! `LAMPLIGHT_FORMAT_RECORD`, the latter are written.
 
 use std::fs;
 use std::path::Path;

@@ -62,7 +62,8 @@ pub fn others_code() -> Result<(), Failed> {
 #[allow(clippy::print_stdout)]
 fn print_counts(folder: &str, counts: &Counts) {
     println!(
-        "{folder}: {} files, {} lines; {} lines of {} files differ ({:.2} %), {} items kept; {:.1} MB/s",
+        "{folder}: {} files, {} lines; {} lines of {} files differ ({:.2} %), {} items kept; \
+         {:.1} MB/s",
         counts.files,
         counts.lines,
         counts.changed,

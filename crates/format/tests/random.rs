@@ -297,13 +297,7 @@ impl Program<'_> {
                 self.all("for ( i = 0 ; i < 4 ; i ++ )");
                 self.block(depth - 1);
             }
-            6 => {
-                self.all("switch ( a ) { case 1 :");
-                self.block(depth - 1);
-                self.put("default :");
-                self.statement(0);
-                self.put("}");
-            }
+            6 => self.choice(depth - 1),
             7 if is_wesl => {
                 self.put("@if(A)");
                 self.statement(depth - 1);
@@ -312,6 +306,14 @@ impl Program<'_> {
             }
             _ => self.block(depth - 1),
         }
+    }
+
+    fn choice(&mut self, depth: usize) {
+        self.all("switch ( a ) { case 1 :");
+        self.block(depth);
+        self.put("default :");
+        self.statement(0);
+        self.put("}");
     }
 
     fn block(&mut self, depth: usize) {

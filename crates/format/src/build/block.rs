@@ -221,8 +221,8 @@ impl Builder<'_> {
                 .contains('\n')
     }
 
-    /// Lays out a block that may stand in one line. `outer` says where its last brace begins its line
-    /// otherwise.
+    /// Lays out a block that may stand in one line. `outer` says where its last brace begins its
+    /// line otherwise.
     fn one_line(&mut self, open: usize, close: usize, inner: u16, outer: (u16, bool)) {
         self.open(GroupKind::Block, false, false);
         self.token(open);
