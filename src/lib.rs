@@ -185,6 +185,7 @@ mod whole {
     pub use lamplight_dap as dap;
     pub use lamplight_debug as debug;
     pub use lamplight_execute as execute;
+    pub use lamplight_format as format;
     pub use lamplight_lsp as lsp;
     pub use lamplight_migrate as migrate;
     pub use lamplight_mutate as mutate;

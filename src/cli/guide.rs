@@ -57,6 +57,11 @@ const ENTRIES: &[HelpEntry] = &[
         &["lamplight translate lamp.frag --to wgsl", "lamplight translate lamp.wesl --to hlsl"],
     ),
     guide_entry("lint", PACKAGE, &["lamplight lint", "lamplight lint shaders/lamp.wesl"]),
+    guide_entry(
+        "fmt",
+        "Formatting shaders",
+        &["lamplight fmt shaders", "lamplight fmt --check shaders/lamp.wesl"],
+    ),
     guide_entry("migrate", "From naga_oil", &["lamplight migrate --from naga_oil old -o new"]),
     guide_entry(
         "gen",

@@ -20,6 +20,7 @@ mod explain;
 mod export;
 mod failure;
 mod features;
+mod fmt;
 mod generate;
 mod guide;
 mod includes;
@@ -82,6 +83,7 @@ enum Command {
     Compile(compile::Arguments),
     Translate(translate::Arguments),
     Lint(lint::Arguments),
+    Fmt(fmt::Arguments),
     Migrate(migrate::Arguments),
     Gen(generate::Arguments),
     Merge(merge::Arguments),
@@ -246,6 +248,7 @@ fn dispatch_command(
         Command::Compile(arguments) => compile::run_compile(arguments, form),
         Command::Translate(arguments) => translate::run_translate(arguments, form),
         Command::Lint(arguments) => lint::run_lint(arguments, form),
+        Command::Fmt(arguments) => fmt::run_fmt(arguments, form),
         Command::Migrate(arguments) => migrate::run_migrate(arguments, form),
         Command::Gen(arguments) => generate::run_generate(arguments, form),
         Command::Merge(arguments) => merge::run_merge(arguments),

@@ -31,6 +31,7 @@ pub fn page_of(code: &Code) -> Option<&'static GuidePage> {
 pub const PAGES: &[GuidePage] = &[
     GuidePage { title: "A picture of your shader", file: "render.md" },
     GuidePage { title: "A package of your own", file: "package.md" },
+    GuidePage { title: "Formatting shaders", file: "formatting.md" },
     GuidePage { title: "Axes, constraints and the manifest", file: "manifest.md" },
     GuidePage { title: "Conditions and constants", file: "conditions.md" },
     GuidePage { title: "GLSL", file: "glsl.md" },

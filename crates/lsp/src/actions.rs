@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::package::PackageModules;
 use super::place::{self, Lines};
-use super::{LanguageServer, complete, format, navigate};
+use super::{LanguageServer, complete, navigate};
 use lamplight_compose::project::{MANIFEST, WESL_MANIFEST};
 
 /// The most imports that are offered for one name.
@@ -162,20 +162,4 @@ fn read_text(file: &Path) -> Option<String> {
     let bytes =
         lamplight_files::input::read_file(file, lamplight_files::limits::FILE_BYTES as u64).ok()?;
     String::from_utf8(bytes).ok()
-}
-
-/// `textDocument/formatting`.
-pub fn format_document(
-    server: &mut LanguageServer,
-    parameters: &Value,
-) -> Result<Value, RequestError> {
-    let document = server.document(parameters)?;
-    let text = &document.text;
-    match format::format_text(text).filter(|new| new != text) {
-        Some(new) => {
-            let range = Lines::new(text).range(0..text.len());
-            Ok(json!([{ "range": range, "newText": new }]))
-        }
-        None => Ok(json!([])),
-    }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::choose;
+use super::{choose, format};
 
 pub fn server_capabilities() -> Value {
     json!({
@@ -19,6 +19,11 @@ pub fn server_capabilities() -> Value {
             "codeActionProvider": { "codeActionKinds": ["quickfix"] },
             "codeLensProvider": {},
             "documentFormattingProvider": true,
+            "documentRangeFormattingProvider": true,
+            "documentOnTypeFormattingProvider": {
+                "firstTriggerCharacter": format::TYPED[0],
+                "moreTriggerCharacter": format::TYPED[1..],
+            },
             "inlayHintProvider": true,
             "semanticTokensProvider": {
                 "legend": { "tokenTypes": ["comment"], "tokenModifiers": [] },

@@ -1,105 +1,97 @@
-//! Layout of WESL: indentation by brackets, no blanks at line ends, no runs of empty lines. No
-//! token changes, and lines stay lines.
+//! Formatting of documents: whole ones, the statements that a selection touches, and the statement
+//! that a typed character ends. Edits are about blanks alone, so that cursors stay.
 
-use lamplight_syntax::wesl::blank;
+use std::path::Path;
 
-/// The most empty lines in a row that are kept.
-const EMPTY: usize = 1;
-const INDENT: &str = "    ";
+use lamplight_diagnostic::source::SourceSet;
+use lamplight_format::{Edit, Indent, Language, Options};
+use lamplight_lint as lint;
+use serde_json::{Value, json};
 
-/// The formatted text; `None` where its brackets or comments do not close.
-pub fn format_text(text: &str) -> Option<String> {
-    let mut out = String::with_capacity(text.len());
-    let (mut depth, mut empty, mut comment) = (0_usize, 0_usize, 0_usize);
-    let mut before = ";".to_owned();
-    // For each open bracket, the indentation of the line that opens it.
-    let mut open: Vec<usize> = Vec::new();
-    for line in text.lines() {
-        if comment > 0 {
-            // The inside of a block comment is its author's.
-            out += line.trim_end();
-            out.push('\n');
-            scan_line(line, &mut comment, &mut |_| Some(()))?;
-            continue;
-        }
-        let trimmed = line.trim();
-        if trimmed.is_empty() {
-            empty += 1;
-            continue;
-        }
-        let closers = trimmed.chars().take_while(|c| matches!(c, ')' | ']' | '}')).count();
-        // No empty line right behind an opening bracket, or right before a closing one.
-        let is_tight = closers > 0 || before.ends_with(['{', '(', '[']);
-        if empty > 0 && !out.is_empty() && !is_tight {
-            out += &"\n".repeat(empty.min(EMPTY));
-        }
-        empty = 0;
-        let level = match closers {
-            0 => depth,
-            // The line stands where the line of the last bracket that it closes begins.
-            _ => *open.get(open.len().checked_sub(closers)?)?,
-        };
-        out += &INDENT.repeat(level + usize::from(closers == 0 && continues_statement(&before)));
-        if !trimmed.starts_with("//") {
-            before = code_of_line(trimmed).to_owned();
-        }
-        out += trimmed;
-        out.push('\n');
-        scan_line(trimmed, &mut comment, &mut |byte| {
-            match byte {
-                b'(' | b'[' | b'{' => open.push(level),
-                _ => drop(open.pop()?),
-            }
-            Some(())
-        })?;
-        depth = open.last().map_or(0, |level| level + 1);
-    }
-    (open.is_empty() && comment == 0 && same_words(text, &out)).then_some(out)
+use super::failure::RequestError;
+use super::place::{self, Lines};
+use super::{Document, LanguageServer};
+
+/// The characters that end a statement, the first one named to editors as such.
+pub const TYPED: [&str; 3] = ["}", ";", "\n"];
+
+/// `textDocument/formatting`.
+pub fn format_document(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
+    let document = server.document(parameters)?;
+    let (language, options) = formatting_of(document, parameters)?;
+    let edits = lamplight_format::format_edits(&document.text, language, &options);
+    Ok(edits_as_json(&document.text, &edits))
 }
 
-/// A line without the comment at its end.
-fn code_of_line(line: &str) -> &str {
-    line.split("//").next().unwrap_or_default().trim_end()
+/// `textDocument/rangeFormatting`.
+pub fn format_range(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
+    let document = server.document(parameters)?;
+    let (language, options) = formatting_of(document, parameters)?;
+    let byte = |end: &str| {
+        let position = parameters.get("range").and_then(|range| range.get(end));
+        position.and_then(|position| place::byte_of_position(&document.text, position))
+    };
+    let range = byte("start").zip(byte("end")).filter(|(start, end)| start <= end);
+    let (start, end) = range.ok_or(RequestError::Parameter("range"))?;
+    let edits = lamplight_format::format_range(&document.text, start..end, language, &options);
+    Ok(edits_as_json(&document.text, &edits))
 }
 
-/// Whether the next line continues the statement of a line. Attributes stand on lines of their own.
-fn continues_statement(before: &str) -> bool {
-    !before.is_empty()
-        && !before.starts_with('@')
-        && !before.ends_with([';', '{', '}', '(', '[', ',', ':', '/'])
+/// `textDocument/onTypeFormatting`.
+pub fn format_typed(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
+    let (document, byte) = server.requested_place(parameters)?;
+    let (language, options) = formatting_of(document, parameters)?;
+    let edits = lamplight_format::format_typed(&document.text, byte, language, &options);
+    Ok(edits_as_json(&document.text, &edits))
 }
 
-/// Calls for each bracket of a line that is in no comment; counts block comments that stay open.
-fn scan_line(
-    line: &str,
-    comment: &mut usize,
-    bracket: &mut dyn FnMut(u8) -> Option<()>,
-) -> Option<()> {
-    let bytes = line.as_bytes();
-    let mut at = 0;
-    while at < bytes.len() {
-        match (bytes[at], bytes.get(at + 1)) {
-            (b'/', Some(b'*')) => {
-                *comment += 1;
-                at += 1;
-            }
-            (b'*', Some(b'/')) if *comment > 0 => {
-                *comment -= 1;
-                at += 1;
-            }
-            (b'/', Some(b'/')) if *comment == 0 => return Some(()),
-            (byte @ (b'(' | b'[' | b'{' | b')' | b']' | b'}'), _) if *comment == 0 => {
-                bracket(byte)?;
-            }
-            _ => {}
-        }
-        at += 1;
-    }
-    Some(())
+fn edits_as_json(text: &str, edits: &[Edit]) -> Value {
+    let lines = Lines::new(text);
+    let one =
+        |edit: &Edit| json!({ "range": lines.range(edit.range.clone()), "newText": edit.text });
+    edits.iter().map(one).collect()
 }
 
-/// Whether two texts have the same tokens and comments: what formatting must not change.
-pub fn same_words(left: &str, right: &str) -> bool {
-    let words = |text: &str| text.chars().filter(|c| !blank::is_blank(*c)).collect::<String>();
-    words(left) == words(right)
+/// The language of a document, and how it is formatted: as the nearest manifest says, and for what
+/// that leaves open, as the editor says.
+fn formatting_of(
+    document: &Document,
+    parameters: &Value,
+) -> Result<(Language, Options), RequestError> {
+    let language = lint::language(&document.path).ok_or(RequestError::Parameter("textDocument"))?;
+    let base = options_of_editor(parameters.get("options").unwrap_or(&Value::Null));
+    let file = document.root.join(&document.path);
+    let found =
+        lamplight_format::options_for(&file, base, &mut SourceSet::default(), read_manifest);
+    let wrong = |found: Vec<lamplight_diagnostic::Diagnostic>| {
+        let message = found.first().map_or_else(String::new, |first| first.message.clone());
+        RequestError::Refused(format!("the options of the formatter are wrong: {message}"))
+    };
+    Ok((language, found.map_err(wrong)?))
+}
+
+fn options_of_editor(options: &Value) -> Options {
+    let usual = Options::default();
+    let spaces = options.get("tabSize").and_then(Value::as_u64);
+    let spaces = spaces.and_then(|size| u8::try_from(size).ok()).filter(|size| *size <= 16);
+    let indent = match options.get("insertSpaces").and_then(Value::as_bool) {
+        Some(false) => Indent::Tab,
+        _ => spaces.map_or(usual.indent, Indent::Spaces),
+    };
+    let ends = options.get("insertFinalNewline").and_then(Value::as_bool);
+    Options { indent, final_newline: ends.unwrap_or(usual.final_newline), ..usual }
+}
+
+fn read_manifest(file: &Path) -> Option<String> {
+    let most = lamplight_files::limits::FILE_BYTES as u64;
+    String::from_utf8(lamplight_files::input::read_file(file, most).ok()?).ok()
 }

@@ -10,6 +10,7 @@
 
 mod editor;
 mod edits;
+mod format;
 mod manifests;
 mod unclosed;
 mod workspace;
@@ -17,6 +18,7 @@ mod workspace;
 fn main() -> std::process::ExitCode {
     lamplight_testing::run_tests(&[
         edits::tests,
+        format::tests,
         manifests::tests,
         unclosed::tests,
         workspace::tests,

@@ -118,9 +118,9 @@ fn parse_to(depth: Depth, sources: &SourceSet, id: SourceId) -> Result<Manifest,
 }
 
 fn read_programs(reader: &mut ManifestReader, document: &DeTable) -> Vec<Program> {
-    reader.check_keys(document, &["program", "features", "glsl"], "a manifest");
+    reader.check_keys(document, &["program", "features", "glsl", "format"], "a manifest");
     let Some(found) = document.get("program") else {
-        if document.contains_key("features") || document.contains_key("glsl") {
+        if ["features", "glsl", "format"].iter().any(|key| document.contains_key(*key)) {
             return Vec::new();
         }
         let message = "the manifest declares no program";
