@@ -51,6 +51,7 @@ mod metal;
 mod migrate;
 mod naga;
 mod new;
+mod npm;
 mod opengl_scene;
 mod oracles;
 mod outputs;
@@ -74,6 +75,7 @@ mod toolchain;
 mod translated;
 mod traps;
 mod validators;
+mod vite;
 
 use std::process::ExitCode;
 
@@ -88,6 +90,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     browser::tests,
     catalogue::tests,
     clients::tests,
+    vite::tests,
     agreement::tests,
     bounds::tests,
     compute::tests,

@@ -1,6 +1,6 @@
 // Serves the app of a folder, until standard input ends: `node serve.mjs dev|preview`.
 
-const vite = await import(new URL("node_modules/vite/dist/node/index.js", `file://${process.cwd()}/`));
+import * as vite from "vite";
 
 const options = { root: process.cwd(), logLevel: "silent", clearScreen: false };
 const place = { port: 0, host: "127.0.0.1" };

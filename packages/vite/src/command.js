@@ -21,7 +21,9 @@ function programOf(option) {
 function missing({ program, from }, error) {
   const text = `the command \`${program}\` cannot be run (${error.code ?? error.message}); its name is from ${from}`;
   const help = "name it by the plugin's option `command` or by the variable `LAMPLIGHT`";
-  return new Error(`${text}\nhelp: install it with: ${INSTALL}\nhelp: or ${help}`);
+  const told = new Error(`${text}\nhelp: install it with: ${INSTALL}\nhelp: or ${help}`);
+  told.stack = "";
+  return told;
 }
 
 /** Runs the command in a folder. Gives its exit code and what it printed. */

@@ -12,6 +12,8 @@ import { importsOf, usageOf } from "./usage.js";
 
 const NAME = "lamplight";
 const OWN = path.dirname(fileURLToPath(import.meta.url));
+/** Where the reader of bundles is, which may be a linked package outside of the page's folder. */
+const READER = path.dirname(fileURLToPath(import.meta.resolve("@lamplight/bundle")));
 
 /** The start of the names of modules that have one thing of a bundle. */
 const PART = "\0lamplight:";
@@ -38,7 +40,7 @@ class Shared {
     this.isBuild = config.command === "build";
     this.logger = config.logger;
     this.cache = path.join(config.cacheDir, "lamplight");
-    config.server.fs.allow.push(this.cache, OWN);
+    config.server.fs.allow.push(this.cache, OWN, READER);
   }
 
   manifest(file) {
@@ -86,16 +88,18 @@ function checkCall(context, bundle, call) {
 }
 
 /** Puts modules with one shader each into the place of calls, and drops an import without a use. */
-function inlineCalls(text, { start, end }, { calls, isAll }, file) {
+function inlineCalls(text, declared, { calls, isAll }, file) {
   const imports = new Map();
-  for (const { start, end, ...asked } of calls.filter((call) => !isBinary(call))) {
+  const known = calls.filter((call) => !isBinary(call));
+  for (const { start, end, ...asked } of known) {
     const id = PART + encodeURIComponent(JSON.stringify({ file, ...asked }));
-    if (!imports.has(id)) imports.set(id, `__lamplight_${text.toString().length}_${imports.size}`);
+    if (!imports.has(id)) imports.set(id, `__lamplight_${declared.start}_${imports.size}`);
     text.overwrite(start, end, `Promise.resolve(${imports.get(id)})`);
   }
   const lines = [...imports].map(([id, name]) => `import ${name} from ${JSON.stringify(id)};`);
-  if (isAll && !calls.some(isBinary)) text.overwrite(start, end, lines.join(" ") || ";");
-  else text.appendLeft(end, ` ${lines.join(" ")}`);
+  const isUnused = isAll && known.length === calls.length;
+  if (isUnused) text.overwrite(declared.start, declared.end, lines.join(" ") || ";");
+  else text.appendLeft(declared.end, ` ${lines.join(" ")}`);
 }
 
 /** Looks at what a module asks of manifests. In a build, what is known goes into the code. */

@@ -33,6 +33,7 @@ const OF_GROUPS: &[(&str, &[&str])] = &[
     ("spirv_forms", VALIDATORS),
     ("tables", &[]),
     ("traps", &[]),
+    ("vite", &["nodejs", "npm", "chromium"]),
 ];
 
 /// Packages below `crates/` whose own tests need more than the repository: their readers and bindings
