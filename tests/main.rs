@@ -71,6 +71,7 @@ mod sketch;
 mod specialise;
 mod spirv_forms;
 mod tables;
+mod three;
 mod toolchain;
 mod translated;
 mod traps;
@@ -91,6 +92,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     catalogue::tests,
     clients::tests,
     vite::tests,
+    three::tests,
     agreement::tests,
     bounds::tests,
     compute::tests,

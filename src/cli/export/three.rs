@@ -88,9 +88,9 @@ fn package_json(name: &str, is_library: bool) -> String {
   "type": "module",
   "sideEffects": false,
   "exports": {{
-    "./tsl/*": {{ "types": "./tsl/*.d.ts", "default": "./tsl/*.js" }},
-    "./parts/*": {{ "types": "./parts/*.d.ts", "default": "./parts/*.js" }},
-    "./chunk": {{ "types": "./chunk.d.ts", "default": "./chunk.js" }},
+    "./tsl/*.js": {{ "types": "./tsl/*.d.ts", "default": "./tsl/*.js" }},
+    "./parts/*.js": {{ "types": "./parts/*.d.ts", "default": "./parts/*.js" }},
+    "./chunk.js": {{ "types": "./chunk.d.ts", "default": "./chunk.js" }},
     "./package.json": "./package.json"
   }},
   "peerDependencies": {{ "three": ">=0.180.0" }}
@@ -102,10 +102,10 @@ fn package_json(name: &str, is_library: bool) -> String {
 fn readme(name: &str, functions: usize, left_out: usize) -> String {
     format!(
         "# {name}-three\n\n{functions} functions for three.js. For `WebGPURenderer`, with either of its \
-         backends, each is a function of TSL in the module `{name}-three/tsl/PATH`, and takes its \
+         backends, each is a function of TSL in the module `{name}-three/tsl/PATH.js`, and takes its \
          parameters in their order. A material has each helper once, whichever functions share it.\n\n\
-         For `ShaderMaterial`, `chunk` of `{name}-three/chunk` puts parts of \
-         `{name}-three/parts/PATH` and all that they need into a text in GLSL. There the names of \
+         For `ShaderMaterial`, `chunk` of `{name}-three/chunk.js` puts parts of \
+         `{name}-three/parts/PATH.js` and all that they need into a text in GLSL. There the names of \
          functions begin with `{name}_`.\n\n\
          [left_out.md](left_out.md) lists {left_out} functions that are not here, or not for WebGL, \
          with the reason of each.\n"

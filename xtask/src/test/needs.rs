@@ -32,6 +32,7 @@ const OF_GROUPS: &[(&str, &[&str])] = &[
     ("shaderlib", VALIDATORS),
     ("spirv_forms", VALIDATORS),
     ("tables", &[]),
+    ("three", &["nodejs", "npm", "chromium"]),
     ("traps", &[]),
     ("vite", &["nodejs", "npm", "chromium"]),
 ];

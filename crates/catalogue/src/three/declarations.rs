@@ -33,14 +33,16 @@ pub(super) struct Declarations {
 
 impl Declarations {
     /// The declarations of a text in which names are those of `Mangle::Underscore`, so that no local
-    /// variable and no member has one of them. Names begin with `prefix`.
+    /// variable and no member has one of them. `homes` has the module of each file of the package, by
+    /// its shown path. Names begin with `prefix`.
     pub(super) fn of(
         composed: &Composed,
         sources: &SourceSet,
+        homes: &BTreeMap<String, String>,
         prefix: &str,
     ) -> Result<Self, Diagnostics> {
-        let origins: Vec<Origin> =
-            composed.parts.iter().map(|part| origin_of(composed, part, sources)).collect();
+        let origin = |part| origin_of(composed, part, sources, homes);
+        let origins: Vec<Origin> = composed.parts.iter().map(origin).collect();
         let names = names_of(&composed.parts, &origins, prefix);
         let renamed = |part: &Part| {
             let text = composed.text.get(part.range.clone()).unwrap_or_default();
@@ -115,7 +117,12 @@ struct Origin {
     name: String,
 }
 
-fn origin_of(composed: &Composed, part: &Part, sources: &SourceSet) -> Origin {
+fn origin_of(
+    composed: &Composed,
+    part: &Part,
+    sources: &SourceSet,
+    homes: &BTreeMap<String, String>,
+) -> Origin {
     let composed_name = part.names.first().cloned().unwrap_or_default();
     let Some(span) = composed.place_of(part) else {
         return Origin { module: String::new(), name: composed_name };
@@ -128,8 +135,20 @@ fn origin_of(composed: &Composed, part: &Part, sources: &SourceSet) -> Origin {
         .find(|piece| KEYWORDS.contains(&piece.text))
         .and_then(|_| words.next())
         .map_or(composed_name, |piece| piece.text.to_owned());
-    let module = source.path.rsplit_once('.').map_or("", |(stem, _)| stem).to_owned();
+    let module = homes.get(&source.path).cloned().unwrap_or_else(|| foreign_home(&source.path));
     Origin { module, name }
+}
+
+/// The module for what is of another package: the last two parts of the path of its file.
+fn foreign_home(path: &str) -> String {
+    let stem = path.rsplit_once('.').map_or(path, |(stem, _)| stem);
+    let mut parts: Vec<&str> = stem.rsplit(['/', '\\']).take(2).collect();
+    parts.reverse();
+    let word = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
+    format!(
+        "others/{}",
+        parts.join("/").replace(|letter| letter != '/' && word(letter) == '_', "_")
+    )
 }
 
 /// The new name of each declaration: the author's behind the prefix. Where two modules have the same,

@@ -87,17 +87,28 @@ pub fn three_package(
         .flat_map(|module| &module.items)
         .filter(|item| item.kind == CatalogueItemKind::Function)
         .collect();
+    let homes = homes_of(&*packages.root.files);
     packages.root.files =
         Box::new(WithRoot { below: packages.root.files, text: root_text(&functions) });
     let graph = resolve::load(sources, &packages, ROOT, Language::Wesl)?;
     let options = Options { mangle: Mangle::Underscore, keep: Keep::Root, stage: None };
     let composed = compose(&graph, settings, &options)?;
-    let declarations = Declarations::of(&composed, sources, name)?;
+    let declarations = Declarations::of(&composed, sources, &homes, name)?;
     let (exported, mut left_out) = chosen(&composed, &functions, &declarations);
     let made = glsl::translated(&declarations, exported, &mut left_out)?;
     left_out.sort();
     let files = write::files(&made, modules, name, &left_out);
     Ok(ThreePackage { files, functions: made.exported.len(), left_out })
+}
+
+/// The module of each file, by the path that is shown of it.
+fn homes_of(files: &dyn Files) -> BTreeMap<String, String> {
+    let paths = files.list(&["wesl", "wgsl"]).into_iter();
+    let home = |path: String| {
+        let (stem, _) = path.rsplit_once('.')?;
+        Some((files.display(&path), stem.to_owned()))
+    };
+    paths.filter_map(home).collect()
 }
 
 /// A module that names each function once, in their order.

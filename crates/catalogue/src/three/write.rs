@@ -227,8 +227,10 @@ fn types_text(path: &str, module: &CatalogueModule, own: &[&Exported<'_>]) -> St
 }
 
 fn comment(lines: &[String], mark: &str, end: &str) -> String {
-    let lines: Vec<String> =
-        lines.iter().map(|line| format!("{mark}{}", line.replace("*/", "* /"))).collect();
+    let lines: Vec<String> = lines
+        .iter()
+        .map(|line| format!("{mark}{}", line.replace("*/", "* /")).trim_end().to_owned())
+        .collect();
     let text = lines.join("\n");
     if text.is_empty() { text } else { text + end }
 }
