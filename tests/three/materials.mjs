@@ -6,7 +6,8 @@ import * as THREE from "three/webgpu";
 import { lampShader } from "./chunks.js";
 import { lampMaterial } from "./material.js";
 
-const SIZE = 48;
+/** Rows of 256 bytes, which both backends read as they are. */
+const SIZE = 64;
 
 function makeScene(three, material) {
   const scene = new three.Scene();
@@ -49,8 +50,17 @@ export async function nodes(backend) {
   if (found !== backend) throw new Error(`three.js took ${found}`);
   prepare(renderer);
   renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+  // A target, since headless Chromium does not show canvases of WebGPU on every machine.
+  const target = new THREE.RenderTarget(SIZE, SIZE);
+  renderer.setRenderTarget(target);
   renderer.render(...makeScene(THREE, lampMaterial(color(THREE), lamp(THREE))));
-  return pixelsOf(canvas);
+  const pixels = [...(await renderer.readRenderTargetPixelsAsync(target, 0, 0, SIZE, SIZE))];
+  return backend === "webgl" ? topFirst(pixels) : pixels;
+}
+
+function topFirst(pixels) {
+  const row = (_, y) => pixels.slice(4 * SIZE * (SIZE - 1 - y), 4 * SIZE * (SIZE - y));
+  return Array.from({ length: SIZE }, row).flat();
 }
 
 /** A picture by chunks. */
