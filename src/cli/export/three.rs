@@ -40,7 +40,7 @@ pub fn three_contents(package: Option<&Path>) -> Result<ThreeContents, Failure> 
         files.extend(license_files());
     }
     files.insert("package.json".to_owned(), package_json(&name, package.is_none()));
-    files.insert("README.md".to_owned(), readme(&name, made.functions, made.left_out.len()));
+    files.insert("README.md".to_owned(), readme_text(&name, made.functions, made.left_out.len()));
     Ok(ThreeContents {
         name: format!("{name}_three"),
         files,
@@ -99,7 +99,7 @@ fn package_json(name: &str, is_library: bool) -> String {
     )
 }
 
-fn readme(name: &str, functions: usize, left_out: usize) -> String {
+fn readme_text(name: &str, functions: usize, left_out: usize) -> String {
     format!(
         "# {name}-three\n\n{functions} functions for three.js. For `WebGPURenderer`, with either of its \
          backends, each is a function of TSL in the module `{name}-three/tsl/PATH.js`, and takes its \

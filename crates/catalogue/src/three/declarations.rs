@@ -11,7 +11,7 @@ use lamplight_translate::tree::{Item, Module};
 use lamplight_translate::wesl::read_module;
 
 use super::MADE;
-use super::signature::{Signature, aliases, signature_of};
+use super::signature::{Signature, signature_of, type_aliases};
 
 /// A declaration in WGSL.
 pub(super) struct Declaration {
@@ -46,7 +46,7 @@ impl Declarations {
         let names = names_of(&composed.parts, &origins, prefix);
         let renamed = |part: &Part| {
             let text = composed.text.get(part.range.clone()).unwrap_or_default();
-            renamed(&code_of(text), &names)
+            renamed_text(&code_of(text), &names)
         };
         let by_composed_name = (composed.parts.iter().enumerate())
             .flat_map(|(index, part)| part.names.iter().map(move |name| (name.clone(), index)))
@@ -78,7 +78,7 @@ impl Declarations {
             _ => None,
         });
         let function = function.last().ok_or("it is not a function under these settings")?;
-        let signature = signature_of(function, &aliases(&self.module))?;
+        let signature = signature_of(function, &type_aliases(&self.module))?;
         for used in self.reached(index) {
             let Declaration { name, kind, .. } = &self.all[used];
             let what = match kind {
@@ -144,11 +144,9 @@ fn foreign_home(path: &str) -> String {
     let stem = path.rsplit_once('.').map_or(path, |(stem, _)| stem);
     let mut parts: Vec<&str> = stem.rsplit(['/', '\\']).take(2).collect();
     parts.reverse();
-    let word = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
-    format!(
-        "others/{}",
-        parts.join("/").replace(|letter| letter != '/' && word(letter) == '_', "_")
-    )
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '/';
+    let word = |letter| if plain(letter) { letter } else { '_' };
+    format!("others/{}", parts.join("/").chars().map(word).collect::<String>())
 }
 
 /// The new name of each declaration: the author's behind the prefix. Where two modules have the same,
@@ -195,7 +193,7 @@ pub(super) fn code_of(text: &str) -> String {
 }
 
 /// The text with other names.
-fn renamed(text: &str, names: &BTreeMap<String, String>) -> String {
+fn renamed_text(text: &str, names: &BTreeMap<String, String>) -> String {
     let word = |text| names.get(text).map_or(text, String::as_str);
     pieces(text)
         .map(|piece| if piece.kind == LexemeKind::Word { word(piece.text) } else { piece.text })

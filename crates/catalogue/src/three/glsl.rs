@@ -67,7 +67,7 @@ impl Parts<'_> {
 }
 
 /// Translates what is exported. A function that cannot be translated is left out with all that need it.
-pub(super) fn translated<'a>(
+pub(super) fn translated_parts<'a>(
     declarations: &Declarations,
     mut exported: Vec<Exported<'a>>,
     left_out: &mut Vec<LeftOut>,
@@ -77,12 +77,12 @@ pub(super) fn translated<'a>(
     loop {
         let wanted: BTreeSet<usize> =
             exported.iter().flat_map(|one| declarations.reached(one.declaration)).collect();
-        let (text, starts) = joined(declarations, &wanted);
+        let (text, starts) = joined_text(declarations, &wanted);
         let module = SourceModule { path: vec!["three".to_owned()], source: MADE, text: &text };
         let problems = match translate_wesl(&[module], &[], &STYLE) {
             Ok(files) => {
                 let glsl = files.into_iter().map(|file| file.text).collect::<String>();
-                return both(declarations, &wanted, &glsl, exported, left_out);
+                return paired_parts(declarations, &wanted, &glsl, exported, left_out);
             }
             Err(problems) => problems,
         };
@@ -94,7 +94,8 @@ pub(super) fn translated<'a>(
             };
             let (right, others) = exported.into_iter().partition(is_right);
             exported = right;
-            left_out.extend(without(others, &format!("GLSL lacks it: {}", problem.message)));
+            left_out
+                .extend(without_functions(others, &format!("GLSL lacks it: {}", problem.message)));
         }
         if exported.len() == before {
             return Err(problems);
@@ -102,7 +103,7 @@ pub(super) fn translated<'a>(
     }
 }
 
-fn without<'a>(
+fn without_functions<'a>(
     functions: Vec<Exported<'a>>,
     reason: &str,
 ) -> impl Iterator<Item = LeftOut> + use<'a> {
@@ -113,7 +114,10 @@ fn without<'a>(
 }
 
 /// The text of some declarations, and where each starts.
-fn joined(declarations: &Declarations, wanted: &BTreeSet<usize>) -> (String, Vec<(usize, usize)>) {
+fn joined_text(
+    declarations: &Declarations,
+    wanted: &BTreeSet<usize>,
+) -> (String, Vec<(usize, usize)>) {
     let (mut text, mut starts) = (String::new(), Vec::new());
     for index in wanted {
         starts.push((text.len(), *index));
@@ -130,7 +134,7 @@ fn declaration_at(starts: &[(usize, usize)], problem: &Diagnostic) -> Option<usi
 }
 
 /// The parts of both texts.
-fn both<'a>(
+fn paired_parts<'a>(
     declarations: &Declarations,
     wanted: &BTreeSet<usize>,
     glsl: &str,

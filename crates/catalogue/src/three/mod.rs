@@ -1,6 +1,6 @@
 //! The functions of a package for three.js: a node of TSL for each, in WGSL and in GLSL.
 //!
-//! `compose -> Declarations -> chosen -> translate -> write`
+//! `compose -> Declarations -> chosen_functions -> translated_parts -> package_files`
 //!
 //! A text with every function is composed once, so that each declaration has one name in all modules.
 //! What the exported functions reach of it is translated to GLSL as one text. Each declaration of the
@@ -94,10 +94,10 @@ pub fn three_package(
     let options = Options { mangle: Mangle::Underscore, keep: Keep::Root, stage: None };
     let composed = compose(&graph, settings, &options)?;
     let declarations = Declarations::of(&composed, sources, &homes, name)?;
-    let (exported, mut left_out) = chosen(&composed, &functions, &declarations);
-    let made = glsl::translated(&declarations, exported, &mut left_out)?;
+    let (exported, mut left_out) = chosen_functions(&composed, &functions, &declarations);
+    let made = glsl::translated_parts(&declarations, exported, &mut left_out)?;
     left_out.sort();
-    let files = write::files(&made, modules, name, &left_out);
+    let files = write::package_files(&made, modules, name, &left_out);
     Ok(ThreePackage { files, functions: made.exported.len(), left_out })
 }
 
@@ -138,7 +138,7 @@ fn path_of(item: &CatalogueItem) -> String {
 }
 
 /// The functions of which nodes can be made.
-fn chosen<'a>(
+fn chosen_functions<'a>(
     composed: &Composed,
     functions: &[&'a CatalogueItem],
     declarations: &Declarations,

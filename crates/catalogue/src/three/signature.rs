@@ -12,7 +12,7 @@ pub struct Signature {
 }
 
 /// The types that have another name in a module.
-pub(super) fn aliases(module: &Module) -> BTreeMap<&str, &Type> {
+pub(super) fn type_aliases(module: &Module) -> BTreeMap<&str, &Type> {
     let alias = |item: &Item| match item {
         Item::Alias(..) => true,
         Item::Function(_)

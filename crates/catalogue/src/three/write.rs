@@ -20,7 +20,7 @@ const RUNTIME: [(&str, &str); 4] = [
 /// Parts that only translations have.
 const TRANSLATED: &str = "translated";
 
-pub(super) fn files(
+pub(super) fn package_files(
     made: &Parts<'_>,
     modules: &[CatalogueModule],
     name: &str,
@@ -29,9 +29,9 @@ pub(super) fn files(
     let mut files: BTreeMap<String, String> =
         RUNTIME.iter().map(|(path, text)| ((*path).to_owned(), (*text).to_owned())).collect();
     let table = PartTable::of(made, name);
-    let homes: BTreeSet<&str> = made.parts.iter().map(home).collect();
+    let homes: BTreeSet<&str> = made.parts.iter().map(home_of).collect();
     for module in homes {
-        let own = made.parts.iter().filter(|part| home(part) == module);
+        let own = made.parts.iter().filter(|part| home_of(part) == module);
         files.insert(format!("parts/{module}.js"), table.parts_text(module, own));
         files.insert(format!("parts/{module}.d.ts"), table.parts_types(module));
     }
@@ -49,7 +49,7 @@ pub(super) fn files(
 }
 
 /// The module that a part is in.
-fn home(part: &Part) -> &str {
+fn home_of(part: &Part) -> &str {
     if part.module.is_empty() { TRANSLATED } else { &part.module }
 }
 
@@ -110,13 +110,13 @@ fn script_name(name: &str) -> String {
 }
 
 /// The way from the folder of one module to another one.
-fn relative(from: &str, to: &str) -> String {
+fn relative_path(from: &str, to: &str) -> String {
     let up = from.matches('/').count();
     format!("{}{to}.js", if up == 0 { "./".to_owned() } else { "../".repeat(up) })
 }
 
 /// A text as a template of JavaScript.
-fn template(text: &str) -> String {
+fn template_literal(text: &str) -> String {
     format!("`{}`", text.replace('\\', "\\\\").replace('`', "\\`").replace("${", "\\${"))
 }
 
@@ -143,11 +143,11 @@ impl<'a> PartTable<'a> {
             let mut needs = Vec::new();
             for needed in part.needs.iter().filter_map(|name| self.parts.get(name.as_str())) {
                 let name = self.own_name(needed);
-                if home(needed) == module {
+                if home_of(needed) == module {
                     needs.push(name);
                 } else {
-                    others.insert(home(needed));
-                    needs.push(format!("{}.{name}", space_of(home(needed))));
+                    others.insert(home_of(needed));
+                    needs.push(format!("{}.{name}", space_of(home_of(needed))));
                 }
             }
             let _ = write!(
@@ -157,15 +157,19 @@ impl<'a> PartTable<'a> {
                 self.own_name(part),
                 part.name,
                 part.is_function,
-                template(&part.wgsl),
-                template(&part.glsl),
+                template_literal(&part.wgsl),
+                template_literal(&part.glsl),
                 needs.join(", ")
             );
         }
         let imports: String = others
             .iter()
             .map(|other| {
-                format!("import * as {} from \"{}\";\n", space_of(other), relative(module, other))
+                format!(
+                    "import * as {} from \"{}\";\n",
+                    space_of(other),
+                    relative_path(module, other)
+                )
             })
             .collect();
         format!("{START}{imports}{body}")
@@ -173,7 +177,7 @@ impl<'a> PartTable<'a> {
 
     fn parts_types(&self, module: &str) -> String {
         let root = "../".repeat(module.matches('/').count() + 1);
-        let own = self.parts.values().filter(|part| home(part) == module);
+        let own = self.parts.values().filter(|part| home_of(part) == module);
         let names: String =
             own.map(|part| format!("export const {}: Part;\n", self.own_name(part))).collect();
         format!("{START}import type {{ Part }} from \"{root}chunk.js\";\n\n{names}")
@@ -208,7 +212,7 @@ fn types_text(path: &str, module: &CatalogueModule, own: &[&Exported<'_>]) -> St
     let root = "../".repeat(path.matches('/').count() + 1);
     let mut text = format!("{START}import type {{ NodeFunction }} from \"{root}node.js\";\n");
     if !module.doc.is_empty() {
-        let _ = writeln!(text, "\n{}", comment(&module.doc, "// ", ""));
+        let _ = writeln!(text, "\n{}", comment_lines(&module.doc, "// ", ""));
     }
     for one in own {
         let parameters: Vec<String> = (one.signature.parameters.iter())
@@ -217,7 +221,7 @@ fn types_text(path: &str, module: &CatalogueModule, own: &[&Exported<'_>]) -> St
         let _ = write!(
             text,
             "\n/**\n{} */\nexport const {}: NodeFunction<[{}], \"{}\">;\n",
-            comment(&one.item.doc, " * ", "\n"),
+            comment_lines(&one.item.doc, " * ", "\n"),
             script_name(&one.item.name),
             parameters.join(", "),
             one.signature.result
@@ -226,7 +230,7 @@ fn types_text(path: &str, module: &CatalogueModule, own: &[&Exported<'_>]) -> St
     text
 }
 
-fn comment(lines: &[String], mark: &str, end: &str) -> String {
+fn comment_lines(lines: &[String], mark: &str, end: &str) -> String {
     let lines: Vec<String> = lines
         .iter()
         .map(|line| format!("{mark}{}", line.replace("*/", "* /")).trim_end().to_owned())
