@@ -3,15 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use lamplight_compose::{Composed, Part, PartKind};
-use lamplight_diagnostic::Diagnostics;
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_syntax::wesl::blank::without_comments;
 use lamplight_syntax::words::{LexemeKind, pieces};
-use lamplight_translate::tree::{Item, Module};
+use lamplight_translate::tree::{Item, Type};
 use lamplight_translate::wesl::read_module;
 
 use super::MADE;
-use super::signature::{Signature, signature_of, type_aliases};
+use super::signature::{Signature, signature_of};
 
 /// A declaration in WGSL.
 pub(super) struct Declaration {
@@ -28,7 +27,8 @@ pub(super) struct Declaration {
 pub(super) struct Declarations {
     pub all: Vec<Declaration>,
     by_composed_name: BTreeMap<String, usize>,
-    module: Module,
+    /// The types that have another name.
+    aliases: BTreeMap<String, Type>,
 }
 
 impl Declarations {
@@ -40,7 +40,7 @@ impl Declarations {
         sources: &SourceSet,
         homes: &BTreeMap<String, String>,
         prefix: &str,
-    ) -> Result<Self, Diagnostics> {
+    ) -> Self {
         let origin = |part| origin_of(composed, part, sources, homes);
         let origins: Vec<Origin> = composed.parts.iter().map(origin).collect();
         let names = names_of(&composed.parts, &origins, prefix);
@@ -60,9 +60,15 @@ impl Declarations {
                 module: origin.module,
             })
             .collect();
-        let whole: Vec<&str> = all.iter().map(|declaration| declaration.text.as_str()).collect();
-        let module = read_module(&["three".to_owned()], MADE, &whole.join("\n"), &[])?;
-        Ok(Self { all, by_composed_name, module })
+        let aliases = all
+            .iter()
+            .filter(|declaration| declaration.kind == PartKind::Alias)
+            .filter_map(|declaration| match read_item(&declaration.text) {
+                Ok(Item::Alias(name, ty)) => Some((name, ty)),
+                _ => None,
+            })
+            .collect();
+        Self { all, by_composed_name, aliases }
     }
 
     pub(super) fn find(&self, composed_name: &str) -> Option<usize> {
@@ -71,14 +77,10 @@ impl Declarations {
 
     /// What a function takes and gives, or why no node can be made of it.
     pub(super) fn signature(&self, index: usize) -> Result<Signature, String> {
-        let name = &self.all[index].name;
-        let items = self.module.items.iter().map(|node| &node.body);
-        let function = items.filter_map(|item| match item {
-            Item::Function(function) if function.name == *name => Some(function),
-            _ => None,
-        });
-        let function = function.last().ok_or("it is not a function under these settings")?;
-        let signature = signature_of(function, &type_aliases(&self.module))?;
+        let Item::Function(function) = read_item(&self.all[index].text)? else {
+            return Err("it is not a function".to_owned());
+        };
+        let signature = signature_of(&function, &self.aliases)?;
         for used in self.reached(index) {
             let Declaration { name, kind, .. } = &self.all[used];
             let what = match kind {
@@ -109,6 +111,16 @@ impl Declarations {
         }
         found
     }
+}
+
+/// One declaration; the error says why it cannot be read.
+fn read_item(text: &str) -> Result<Item, String> {
+    let module = read_module(&["three".to_owned()], MADE, text, &[]).map_err(|problems| {
+        let message = problems.first().map_or("", |problem| problem.message.as_str());
+        format!("it cannot be translated: {message}")
+    })?;
+    let item = module.items.into_iter().next().map(|node| node.body);
+    item.ok_or_else(|| "it has no declaration".to_owned())
 }
 
 /// Where a declaration is from.

@@ -13,7 +13,7 @@ use lamplight_translate::print::{Dialect, Style};
 use lamplight_translate::{SourceModule, translate_wesl};
 
 use super::declarations::{Declarations, code_of};
-use super::{Exported, LeftOut, MADE, path_of};
+use super::{Exported, LeftOut, MADE, path_of, without_places};
 
 /// Functions of GLSL 4.50 that GLSL ES 3.00 lacks, of those that translations have.
 const LACKING: &[&str] = &[
@@ -98,7 +98,7 @@ pub(super) fn translated_parts<'a>(
                 .extend(without_functions(others, &format!("GLSL lacks it: {}", problem.message)));
         }
         if exported.len() == before {
-            return Err(problems);
+            return Err(without_places(problems));
         }
     }
 }
@@ -156,7 +156,7 @@ fn paired_parts<'a>(
             needs: needs.collect(),
         });
     }
-    for found in parts_of(glsl)? {
+    for found in parts_of(glsl).map_err(without_places)? {
         let place = *places.entry(found.name.clone()).or_insert(parts.len());
         match parts.get_mut(place) {
             Some(part) => {

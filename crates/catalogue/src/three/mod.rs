@@ -46,6 +46,15 @@ pub struct LeftOut {
 /// Stands for texts that are no source of the author's.
 const MADE: SourceId = SourceId(u32::MAX);
 
+/// Problems of a text that is no author's: without their places.
+fn without_places(mut problems: Diagnostics) -> Diagnostics {
+    for problem in &mut problems {
+        problem.labels.clear();
+        problem.notes.push("in the text of all functions that are exported".to_owned());
+    }
+    problems
+}
+
 /// The file that uses all functions. No other has this name.
 const ROOT: &str = "lamplight_three_export.wesl";
 
@@ -93,7 +102,7 @@ pub fn three_package(
     let graph = resolve::load(sources, &packages, ROOT, Language::Wesl)?;
     let options = Options { mangle: Mangle::Underscore, keep: Keep::Root, stage: None };
     let composed = compose(&graph, settings, &options)?;
-    let declarations = Declarations::of(&composed, sources, &homes, name)?;
+    let declarations = Declarations::of(&composed, sources, &homes, name);
     let (exported, mut left_out) = chosen_functions(&composed, &functions, &declarations);
     let made = glsl::translated_parts(&declarations, exported, &mut left_out)?;
     left_out.sort();

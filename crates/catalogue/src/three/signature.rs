@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use lamplight_translate::tree::{Function, Item, Module, Scalar, Type};
+use lamplight_translate::tree::{Function, Scalar, Type};
 
 /// The parameters of a function with their types, and its result.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -11,29 +11,10 @@ pub struct Signature {
     pub result: String,
 }
 
-/// The types that have another name in a module.
-pub(super) fn type_aliases(module: &Module) -> BTreeMap<&str, &Type> {
-    let alias = |item: &Item| match item {
-        Item::Alias(..) => true,
-        Item::Function(_)
-        | Item::Structure(_)
-        | Item::Constant(_)
-        | Item::Variable(_)
-        | Item::Assertion(_) => false,
-    };
-    let found = module.items.iter().filter(|node| alias(&node.body));
-    found
-        .filter_map(|node| match &node.body {
-            Item::Alias(name, ty) => Some((name.as_str(), ty)),
-            _ => None,
-        })
-        .collect()
-}
-
 /// The signature of a function; the error is the reason why no node has it.
 pub(super) fn signature_of(
     function: &Function,
-    aliases: &BTreeMap<&str, &Type>,
+    aliases: &BTreeMap<String, Type>,
 ) -> Result<Signature, String> {
     if function.stage.is_some() {
         return Err("it is an entry point".to_owned());
@@ -51,7 +32,7 @@ pub(super) fn signature_of(
 }
 
 /// The name of a type in TSL; the error says what it is.
-fn type_name(ty: &Type, aliases: &BTreeMap<&str, &Type>) -> Result<String, String> {
+fn type_name(ty: &Type, aliases: &BTreeMap<String, Type>) -> Result<String, String> {
     let prefix = |scalar: Scalar| match scalar {
         Scalar::Bool => "b",
         Scalar::I32 | Scalar::AbstractInteger => "i",
@@ -64,7 +45,7 @@ fn type_name(ty: &Type, aliases: &BTreeMap<&str, &Type>) -> Result<String, Strin
         Type::Matrix { columns, rows, scalar: Scalar::F32 } if columns == rows => {
             return Ok(format!("mat{columns}"));
         }
-        Type::Named(name) => match aliases.get(name.as_str()) {
+        Type::Named(name) => match aliases.get(name) {
             Some(meant) => return type_name(meant, aliases),
             None => "a structure",
         },
