@@ -18,7 +18,7 @@ use lamplight::execute::kernel::Kernel;
 use lamplight::execute::{Session, on_thread};
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
-use naga::{ScalarKind, TypeInner, VectorSize};
+use naga::{Handle, ScalarKind, Type, TypeInner, VectorSize};
 
 use crate::{is_whole, npm};
 
@@ -146,7 +146,8 @@ impl Session for ThreeSession {
             return Err(Diagnostic::error(codes::EXECUTOR_LACKS, message));
         }
         let function = &kernel.module.functions[kernel.function];
-        let name_of = |ty| type_name(&kernel.module.types[ty].inner).ok_or("no name of a type");
+        let name_of =
+            |ty: Handle<Type>| type_name(&kernel.module.types[ty].inner).ok_or("no name of a type");
         let parameters: Result<Vec<String>, _> =
             function.arguments.iter().map(|argument| name_of(argument.ty)).collect();
         let result = function.result.as_ref().ok_or("no result").map_err(failed)?;
