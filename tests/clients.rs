@@ -242,7 +242,7 @@ fn mistakes_are_seen() -> Outcome {
 }
 
 /// Counts the lines with the mark, and those between a mark and its end.
-fn few_lines(name: &str) -> Outcome {
+pub fn few_lines(name: &str) -> Outcome {
     let folder = root().join("tests/clients");
     let mut text = std::fs::read_to_string(folder.join(name))?;
     if name.ends_with(".c") {

@@ -11,6 +11,8 @@ use lamplight::lsp::wire::{self, Incoming};
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
 
+use crate::npm;
+
 type Outcome = Result<(), Failed>;
 
 const LAMPLIGHT: &str = env!("CARGO_BIN_EXE_lamplight");
@@ -31,32 +33,6 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/dap")
 }
 
-/// The folder with the client, which npm installs once for each version.
-fn client() -> Result<PathBuf, Failed> {
-    let lock = std::fs::read(folder().join("package-lock.json"))?;
-    let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("dap");
-    let installed = place.join("node_modules");
-    if installed.is_dir()
-        && std::fs::read(place.join("installed.json")).is_ok_and(|old| old == lock)
-    {
-        return Ok(installed);
-    }
-    std::fs::create_dir_all(&place)?;
-    for name in ["package.json", "package-lock.json"] {
-        std::fs::copy(folder().join(name), place.join(name))?;
-    }
-    let output = Command::new("npm")
-        .args(["ci", "--no-audit", "--no-fund", "--loglevel=error"])
-        .current_dir(&place)
-        .output()
-        .map_err(|error| format!("npm: {error}; install it with: apt-get install npm"))?;
-    if !output.status.success() {
-        return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
-    }
-    std::fs::write(place.join("installed.json"), lock)?;
-    Ok(installed)
-}
-
 /// Everything that is said in a session over a file in WESL with an import and over one in GLSL, with
 /// steps back over a call and over the turns of a loop.
 fn session() -> Outcome {
@@ -64,7 +40,7 @@ fn session() -> Outcome {
         .arg(folder().join("session.cjs"))
         .arg(LAMPLIGHT)
         .arg(folder())
-        .env("NODE_PATH", client()?)
+        .env("NODE_PATH", npm::installed(&folder(), "dap")?)
         .output()
         .map_err(|error| format!("node: {error}; install it with: apt-get install nodejs"))?;
     let said = String::from_utf8_lossy(&output.stdout).into_owned();

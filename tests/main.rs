@@ -51,6 +51,7 @@ mod metal;
 mod migrate;
 mod naga;
 mod new;
+mod npm;
 mod opengl_scene;
 mod oracles;
 mod outputs;
@@ -70,10 +71,12 @@ mod sketch;
 mod specialise;
 mod spirv_forms;
 mod tables;
+mod three;
 mod toolchain;
 mod translated;
 mod traps;
 mod validators;
+mod vite;
 
 use std::process::ExitCode;
 
@@ -88,6 +91,8 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     browser::tests,
     catalogue::tests,
     clients::tests,
+    vite::tests,
+    three::tests,
     agreement::tests,
     bounds::tests,
     compute::tests,

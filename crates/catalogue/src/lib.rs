@@ -17,6 +17,7 @@ pub mod preset;
 pub mod probe;
 pub mod quality;
 pub mod reader;
+pub mod three;
 pub mod translated;
 
 use lamplight_compose::project::LIBRARY;

@@ -143,6 +143,8 @@ export class Shader {
   readonly entry: string;
   readonly stage: Stage;
   readonly size: number;
+  /** Of the bytes, as hexadecimal digits: equal hashes are equal outputs. */
+  readonly hash: string;
   readonly reflection: Reflection;
   readonly native: Native;
   readonly constants: Constant[];

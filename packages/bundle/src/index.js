@@ -326,6 +326,8 @@ export class Shader {
     this.entry = native.entry_name;
     this.stage = reflection.stage;
     this.size = blob.size;
+    /** Of the bytes: equal hashes are equal outputs. */
+    this.hash = [...blob.hash].map((byte) => byte.toString(16).padStart(2, "0")).join("");
     this.reflection = reflection;
     this.native = native;
     this.constants = constants;

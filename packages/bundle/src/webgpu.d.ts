@@ -8,9 +8,12 @@ export { packBlock } from "./index.js";
  */
 export function layoutEntries(layout: LayoutBinding[]): GPUBindGroupLayoutEntry[][];
 
-/** One pipeline layout for all permutations of a program, and its bind group layouts. */
+/**
+ * One pipeline layout for all permutations of a program, and its bind group layouts. What the
+ * permutations bind is that of a bundle, or a list.
+ */
 export function pipelineLayout(
-  device: GPUDevice, bundle: Bundle, program: string, options?: { language?: Language },
+  device: GPUDevice, bundle: Bundle | LayoutBinding[], program: string, options?: { language?: Language },
 ): { layout: GPUPipelineLayout; groups: GPUBindGroupLayout[] };
 
 /** A stage of a pipeline: its module, its entry point, and the constants that the key chooses. */

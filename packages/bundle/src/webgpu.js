@@ -57,9 +57,12 @@ export function layoutEntries(layout) {
   return Array.from(groups, (entries) => entries ?? []);
 }
 
-/** One pipeline layout for all permutations of a program, and its bind group layouts. */
+/**
+ * One pipeline layout for all permutations of a program, and its bind group layouts. What the
+ * permutations bind is that of a bundle, or a list.
+ */
 export function pipelineLayout(device, bundle, program, { language } = {}) {
-  const all = bundle.layout(program, language);
+  const all = Array.isArray(bundle) ? bundle : bundle.layout(program, language);
   const groups = layoutEntries(all).map((entries, group) =>
     device.createBindGroupLayout({ label: `${program} group ${group}`, entries }),
   );

@@ -2,6 +2,7 @@
 
 mod cargo;
 mod npm;
+mod three;
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -32,6 +33,9 @@ pub struct Arguments {
     /// that others may import are `public`; 0.4 does not read this word.
     #[arg(long, value_enum, value_name = "VERSION", default_value_t)]
     wesl: WeslVersion,
+    /// The folder of the package whose functions `--form three` writes, in the place of the library's.
+    #[arg(long, value_name = "DIR")]
+    package: Option<PathBuf>,
     #[command(flatten)]
     overwrite: Overwrite,
 }
@@ -49,6 +53,9 @@ enum ExportForm {
     Hlsl,
     /// `DIR/lamplight`: the functions in MSL, for Metal.
     Metal,
+    /// `DIR/lamplight_three`: an npm package with a node of TSL for each function, and with chunks of
+    /// GLSL, for three.js.
+    Three,
     /// `DIR/lamplight_c`: headers that read bundles in C and C++, and a package for CMake.
     C,
 }
@@ -91,7 +98,11 @@ pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
     if arguments.wesl != WeslVersion::default() && !matches!(arguments.form, ExportForm::Cargo) {
         return Err(Failure::usage("`--wesl` is for `--form cargo`"));
     }
+    if arguments.package.is_some() && !matches!(arguments.form, ExportForm::Three) {
+        return Err(Failure::usage("`--package` is for `--form three`"));
+    }
     let (name, contents) = match arguments.form {
+        ExportForm::Three => return export_three(&arguments),
         ExportForm::Files => (LIBRARY, exported_files()?),
         ExportForm::Cargo => {
             (cargo::NAME, cargo::crate_contents(library_modules()?, arguments.wesl)?)
@@ -103,12 +114,33 @@ pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
         ExportForm::Metal => (LIBRARY, translated_library(Dialect::Msl)?),
         ExportForm::C => ("lamplight_c", headers()),
     };
+    let count = write_package(&arguments, name, contents)?;
+    let folder = arguments.folder.join(name);
+    Ok(writeln!(stdout(), "{}: {count} files", folder.display())?)
+}
+
+/// Writes a package's files below its name, and gives their number.
+fn write_package(
+    arguments: &Arguments,
+    name: &str,
+    contents: PackageContents,
+) -> Result<usize, Failure> {
     let files: PackageContents =
         contents.into_iter().map(|(path, text)| (format!("{name}/{path}"), text)).collect();
     let files_as_bytes = files.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
     output::write_folder(&arguments.folder, files_as_bytes, arguments.overwrite.replace())?;
-    let folder = arguments.folder.join(name);
-    Ok(writeln!(stdout(), "{}: {} files", folder.display(), files.len())?)
+    Ok(files.len())
+}
+
+fn export_three(arguments: &Arguments) -> Result<(), Failure> {
+    let made = three::three_contents(arguments.package.as_deref())?;
+    let count = write_package(arguments, &made.name, made.files)?;
+    let folder = arguments.folder.join(&made.name);
+    writeln!(stdout(), "{}: {count} files, {} functions", folder.display(), made.functions)?;
+    for three::LeftOut { path, reason } in &made.left_out {
+        writeln!(stdout(), "left out: {path}: {reason}")?;
+    }
+    Ok(())
 }
 
 fn headers() -> PackageContents {

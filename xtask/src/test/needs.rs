@@ -32,7 +32,9 @@ const OF_GROUPS: &[(&str, &[&str])] = &[
     ("shaderlib", VALIDATORS),
     ("spirv_forms", VALIDATORS),
     ("tables", &[]),
+    ("three", &["nodejs", "npm", "chromium"]),
     ("traps", &[]),
+    ("vite", &["nodejs", "npm", "chromium"]),
 ];
 
 /// Packages below `crates/` whose own tests need more than the repository: their readers and bindings

@@ -1,0 +1,3 @@
+import lamplight from "@lamplight/vite";
+
+export default { plugins: [lamplight({ targets: ["essl300"] })], build: { target: "esnext" } };
