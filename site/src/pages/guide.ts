@@ -1,4 +1,4 @@
-import { h, repeated, route } from "../dom";
+import { address, h, repeated, route, routeOf } from "../dom";
 
 type Html = { default: string };
 
@@ -15,8 +15,10 @@ export async function page(into: HTMLElement) {
     const load = pages.get(name || "README");
     if (load) article.innerHTML = (await load()).default;
     else article.replaceChildren(h("h1", {}, "Not found"), h("p", {}, `The guide has no page ${repeated(name)}.`));
-    for (const link of contents.querySelectorAll("a")) {
-        if (link.getAttribute("href") === `#/guide/${name || "README"}`) link.setAttribute("aria-current", "page");
+    for (const link of [...contents.querySelectorAll("a"), ...article.querySelectorAll<HTMLAnchorElement>("a[href^='#/']")]) {
+        const to = routeOf(new URL(link.href))!;
+        link.href = address(to.page, to.path);
+        if (contents.contains(link) && to.path === (name || "README")) link.setAttribute("aria-current", "page");
     }
     for (const title of contents.querySelectorAll("h1")) {
         title.replaceWith(h("p", { class: "part" }, title.textContent ?? ""));
