@@ -71,10 +71,10 @@ export function code(text: string, label: string, language: Language = "other"):
 }
 
 export function choose(
-    label: string, values: string[], value: string, change: (value: string) => void,
+    label: string, values: string[], value: string, change: (value: string) => void, empty = "as published",
 ): HTMLLabelElement {
     const select = h("select", { onchange: () => change(select.value) },
-        ...values.map((one) => h("option", { value: one, selected: one === value }, one || "as published")));
+        ...values.map((one) => h("option", { value: one, selected: one === value }, one || empty)));
     return h("label", {}, h("span", {}, label), select);
 }
 

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use glam::DVec4;
 use lamplight::bundle::SourceClip;
@@ -39,6 +40,8 @@ struct Image {
 
 thread_local! {
     static KEPT: RefCell<BTreeMap<String, Image>> = const { RefCell::new(BTreeMap::new()) };
+    /// The stages of the last text: while time passes or a model is turned, they stay.
+    static LAST: RefCell<Option<(ShaderRequest, Rc<OwnStages>)>> = const { RefCell::new(None) };
 }
 
 /// Takes an image of the user's for textures: four bytes a pixel, row by row from the top. False if it is
@@ -146,15 +149,30 @@ fn drawn(
 }
 
 /// The stages of the file, and of the one beside it that has the other stage in GLSL.
-fn stages_of(request: &SketchRequest, sources: &mut SourceSet) -> Result<OwnStages, Diagnostics> {
+fn stages_of(
+    request: &SketchRequest,
+    sources: &mut SourceSet,
+) -> Result<Rc<OwnStages>, Diagnostics> {
     let shader = &request.shader;
+    let is_it = |(known, _): &&(ShaderRequest, Rc<OwnStages>)| known == shader;
+    let known = LAST.with_borrow(|last| last.as_ref().filter(is_it).map(|(_, one)| one.clone()));
+    if let Some(found) = known {
+        // What runs for a pixel leads back to the texts, so they are read again.
+        composed_text(shader, sources)?;
+        if let Some(root) = partner_of(shader) {
+            composed_text(&ShaderRequest { root, entry: None, ..shader.clone() }, sources)?;
+        }
+        return Ok(found);
+    }
     let mut texts = vec![read_text(shader, sources)?];
     if let Some(root) = partner_of(shader) {
         let partner = ShaderRequest { root, entry: None, ..shader.clone() };
         texts.push(read_text(&partner, sources)?);
     }
     let entries: Vec<String> = shader.entry.iter().cloned().collect();
-    choose_stages(&texts, &entries)
+    let stages = Rc::new(choose_stages(&texts, &entries)?);
+    LAST.set(Some((shader.clone(), stages.clone())));
+    Ok(stages)
 }
 
 fn read_text(shader: &ShaderRequest, sources: &mut SourceSet) -> Result<OwnText, Diagnostics> {
