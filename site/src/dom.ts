@@ -50,15 +50,15 @@ export const scrolled = (label: string, ...children: Child[]): HTMLPreElement =>
 export const coloured = (text: string, language: Language): Child[] =>
     tokens(text, language).map(({ kind, text }) => (kind ? h("span", { class: `tok-${kind}` }, text) : text));
 
-/** A text with a button that copies it. */
-export function code(text: string, label: string, language: Language = "other"): HTMLElement {
+/** A button that copies a text; where the browser refuses that, it selects the place of the text. */
+export function copyButton(text: string, label: string, place: HTMLElement): HTMLButtonElement {
     const copied = async () => {
         try {
             await navigator.clipboard.writeText(text);
             return "Copied";
         } catch {
             // Browsers refuse it to pages that did not come over a safe connection.
-            getSelection()?.selectAllChildren(pre);
+            getSelection()?.selectAllChildren(place);
             return "Selected: copy it now";
         }
     };
@@ -66,8 +66,13 @@ export function code(text: string, label: string, language: Language = "other"):
         class: "copy", type: "button", "aria-label": `Copy ${label}`,
         onclick: async () => say(button.textContent = await copied()),
     }, "Copy");
+    return button;
+}
+
+/** A text with a button that copies it. */
+export function code(text: string, label: string, language: Language = "other"): HTMLElement {
     const pre = scrolled(label, h("code", {}, ...coloured(text, language)));
-    return h("div", { class: "code" }, button, pre);
+    return h("div", { class: "code" }, copyButton(text, label, pre), pre);
 }
 
 export function choose(

@@ -153,6 +153,13 @@ function preview(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo
     seen.observe(sketch.element);
 }
 
+/** A value between two of those that have curves, so that the slider's curve is seen beside them. */
+function between(values: number[]): number {
+    const sorted = [...values].sort((one, other) => one - other);
+    const middle = Math.floor(sorted.length / 2);
+    return middle ? (sorted[middle - 1] + sorted[middle]) / 2 : sorted[0];
+}
+
 /** The plot with its parameters as sliders, and the value at one place in f64 and on the GPU. */
 async function curves(live: HTMLElement, item: ItemInfo) {
     const info = item.plot!;
@@ -165,7 +172,7 @@ async function curves(live: HTMLElement, item: ItemInfo) {
     const span = info.values.length ? Math.max(...info.values) - Math.min(...info.values) || 1 : 1;
     const x = slider(info.label, info.from, info.to, info.from + Math.round(0.4 * steps) / steps * (info.to - info.from), steps);
     const own = info.parameter && info.values.length
-        ? slider(info.parameter, Math.min(...info.values), Math.max(...info.values, Math.min(...info.values) + span), info.values[Math.floor(info.values.length / 2)])
+        ? slider(info.parameter, Math.min(...info.values), Math.max(...info.values, Math.min(...info.values) + span), between(info.values))
         : undefined;
     const note = h("p", { class: "note" });
     let gpu: Computed | undefined;

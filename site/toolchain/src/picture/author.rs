@@ -29,6 +29,10 @@ use crate::shader::{ShaderRequest, composed_text};
 const IMAGES: usize = 16;
 const PIXELS: usize = 1 << 20;
 
+/// How many trips the loops of a fragment may make, so that a text that never ends does not stop the
+/// browser.
+const TRIPS: u32 = 4096;
+
 /// What names an image of the user's begins with.
 const FILE: &str = "file:";
 
@@ -170,7 +174,7 @@ fn stages_of(
         texts.push(read_text(&partner, sources)?);
     }
     let entries: Vec<String> = shader.entry.iter().cloned().collect();
-    let stages = Rc::new(choose_stages(&texts, &entries)?);
+    let stages = Rc::new(choose_stages(&texts, &entries)?.with_trips(TRIPS));
     LAST.set(Some((shader.clone(), stages.clone())));
     Ok(stages)
 }
