@@ -132,7 +132,9 @@ fn live() -> Outcome {
         text(&page, "location.pathname + location.hash")?,
         "/functions/brdf/specular/d_ggx.html"
     );
-    page.evaluate("window.same = true; document.querySelector(\".list a[href$='/specular/phong.html']\").click()", PATIENCE)?;
+    page.evaluate("window.same = true", PATIENCE)?;
+    let phong = "document.querySelector(\".list a[href$='/specular/phong.html']\")";
+    page.evaluate(&format!("{phong}.click()"), PATIENCE)?;
     wait(&page, "document.querySelector('article h1')?.textContent === 'phong'")?;
     assert_eq!(text(&page, "location.pathname")?, "/functions/brdf/specular/phong.html");
     page.evaluate("document.querySelector('nav a[href$=\"guide/index.html\"]').click()", PATIENCE)?;

@@ -176,9 +176,8 @@ pub fn prepare_own(
     let items: Vec<(Mesh, Buffers)> =
         objects.iter().map(item).collect::<Result<_, Diagnostics>>()?;
     let first = objects.first().map_or_else(|| around.clone(), |object| around.of_object(object));
-    let (rows, notes) = bound.rows(&first);
+    let ((rows, notes), uniforms) = (bound.rows(&first), bound.uniforms(&first));
     let rows = input_rows(stages, &request.inputs).into_iter().chain(rows).collect();
-    let uniforms = bound.uniforms(&first);
     let (is_flat, is_upside_down) = (!matches!(ground, Ground::Model), stages.is_for_opengl());
     let (eye, background) = viewer(stages, scene, shot);
     let pass = PreparedPass {
