@@ -9,8 +9,11 @@ import { code, h, sentence } from "../dom";
 import { type Kind, type Language, type State, languageOf, languageOfFile, next } from "../highlight";
 
 const KINDS: Kind[] = ["comment", "keyword", "type", "number", "string", "attribute", "function", "prompt"];
-const TAGS = Object.fromEntries(KINDS.map((kind) => [kind, Tag.define(kind)]));
-const COLOURS = HighlightStyle.define(KINDS.map((kind) => ({ tag: TAGS[kind], class: `tok-${kind}` })));
+/** What the tokens of a kind are called: some of the kinds' own names mean something else to CodeMirror. */
+const called = (kind: Kind) => `lamplight-${kind}`;
+
+const TAGS = Object.fromEntries(KINDS.map((kind) => [called(kind), Tag.define(kind)]));
+const COLOURS = HighlightStyle.define(KINDS.map((kind) => ({ tag: TAGS[called(kind)], class: `tok-${kind}` })));
 
 /** The grammar of a language for the editor, by the tokens that listings have too. */
 function grammar(language: Language): LanguageSupport {
@@ -20,7 +23,7 @@ function grammar(language: Language): LanguageSupport {
         token(stream, state) {
             const { end, kind } = next(language, stream.string, stream.pos, state);
             stream.pos = Math.max(end, stream.pos + 1);
-            return kind ?? null;
+            return kind ? called(kind) : null;
         },
         tokenTable: TAGS,
         languageData: { commentTokens: { line: language === "toml" ? "#" : "//" }, closeBrackets: { brackets: ["(", "[", "{"] } },
