@@ -3,13 +3,18 @@ import { readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { Marked, type Tokens } from "marked";
 import type { Plugin } from "vite";
+import { type Language, languageOf, tokens } from "./src/highlight";
 
 /** The part of an address that leads to a heading, as GitHub makes it. */
 function anchor(text: string): string {
     return text.toLowerCase().replace(/[^\p{L}\p{N}\s_-]/gu, "").trim().replace(/\s/g, "-");
 }
 
-const escaped = (text: string) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/"/g, "&quot;");
+export const escaped = (text: string) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/"/g, "&quot;");
+
+/** A text with the classes of its tokens. */
+export const coloured = (text: string, language: Language): string => tokens(text, language).map(({ kind, text }) =>
+    (kind ? `<span class="tok-${kind}">${escaped(text)}</span>` : escaped(text))).join("");
 
 /** A link between pages of the guide as one between pages of the site. */
 function rewritten(href: string, page: string): string {
@@ -39,7 +44,7 @@ export function page(text: string, name: string, folder: string): string {
             },
             code({ text, lang }: Tokens.Code) {
                 const label = (lang ?? "").split(" ")[0] || "text";
-                return `<pre tabindex="0" role="group" aria-label="${escaped(label)}"><code>${escaped(text)}</code></pre>\n`;
+                return `<pre tabindex="0" role="group" aria-label="${escaped(label)}"><code>${coloured(text, languageOf(label))}</code></pre>\n`;
             },
             table(token: Tokens.Table) {
                 const row = (cells: Tokens.TableCell[], tag: string) =>

@@ -1,6 +1,7 @@
 import { fileURLToPath } from "node:url";
 import { defineConfig } from "vite";
 import { guide } from "./guide";
+import { staticPages } from "./static";
 
 const below = (path: string) => fileURLToPath(new URL(path, import.meta.url));
 
@@ -8,8 +9,10 @@ const below = (path: string) => fileURLToPath(new URL(path, import.meta.url));
 export default defineConfig({
     base: "./",
     publicDir: false,
-    plugins: [guide],
-    resolve: { alias: { "@lamplight/toolchain": below("../target/toolchain/index.js") } },
+    plugins: [guide, staticPages],
+    resolve: { alias: {
+        "@lamplight/toolchain": below("../target/toolchain/index.js"),
+    } },
     worker: { format: "es" },
     server: { fs: { allow: [below("..")] } },
     build: {

@@ -267,6 +267,7 @@ fn heat(row: &Row) -> Result<HeatMap, Diagnostics> {
         time: 1.0,
         linear: true,
         vertices: None,
+        inputs: Default::default(),
     };
     let shot = Shot {
         size: [SIZE; 2],

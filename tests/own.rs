@@ -234,6 +234,7 @@ fn prepared(case: &Case, entries: &[String]) -> Result<OwnPicture, Diagnostics> 
         time: 0.25,
         linear: case.linear,
         vertices: None,
+        inputs: Default::default(),
     };
     prepare_own(&stages, &request, &shot())
 }
@@ -343,6 +344,7 @@ fn refused() -> Outcome {
             time: 0.0,
             linear: true,
             vertices: None,
+            inputs: Default::default(),
         };
         let found = read.and_then(|stages| prepare_own(&stages, &request, &shot()).map(|_| ()));
         let errors = found.err().unwrap_or_default();

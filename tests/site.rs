@@ -2,6 +2,7 @@
 //! change them, mistakes are underlined at their place, and links keep the user's choices.
 //! `cargo xtask test` builds the site first.
 
+mod files;
 mod keys;
 mod links;
 mod lost;
@@ -32,8 +33,10 @@ type Case = (&'static str, fn() -> Outcome);
 const PATIENCE: Duration = Duration::from_secs(120);
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 10] = [
+    let cases: [Case; 12] = [
         ("catalogue", catalogue),
+        ("files", files::files),
+        ("arrival", files::arrival),
         ("pictures", pictures::pictures),
         ("pixels", pixels::pixels),
         ("programs", programs::programs),

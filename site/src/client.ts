@@ -58,6 +58,7 @@ export class Client {
     #receive(answer: Answer) {
         if (answer.ready) {
             this.#isReady = true;
+            performance.mark("toolchain-ready");
             this.onLoading(false);
             this.#first()?.start();
         } else if (answer.failed !== undefined) {

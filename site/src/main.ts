@@ -1,10 +1,11 @@
 import { toolchain } from "./client";
-import { countPage, h, reason, repeated, route } from "./dom";
+import { ROOT, address, countPage, h, isKnown, reason, repeated, route, routeOf } from "./dom";
 
 /** A page fills the place it is given, and says what to do when it is left. */
 export type Page = (into: HTMLElement) => Promise<(() => void) | void>;
 
 const PAGES: Record<string, { title: string; open: () => Promise<{ page: Page }> }> = {
+    home: { title: "Lamplight", open: () => import("./pages/home") },
     catalogue: { title: "Catalogue", open: () => import("./pages/catalogue") },
     programs: { title: "Programs", open: () => import("./pages/programs") },
     playground: { title: "Playground", open: () => import("./pages/playground") },
@@ -21,7 +22,7 @@ const missing = (why: string): typeof PAGES[string] => ({
     title: "Not found",
     open: async () => ({
         page: async (into) => into.replaceChildren(h("h1", {}, "Not found"),
-            h("p", {}, `${why} `, h("a", { href: "#/catalogue" }, "To the catalogue"))),
+            h("p", {}, `${why} `, h("a", { href: address("catalogue") }, "To the catalogue"))),
     }),
 });
 
@@ -35,6 +36,23 @@ function named(page: string): typeof PAGES[string] {
 let leave: (() => void) | void;
 let opened = 0;
 
+/** Shows a page in place of the one before it. What the file of a page has already stays until there is
+ * something to replace it with. */
+function replaceMain(into: HTMLElement, isFirst: boolean) {
+    const before = document.querySelector("main")!;
+    if (!isFirst || !before.dataset.page) return before.replaceWith(into);
+    into.replaceChildren();
+    into.hidden = true;
+    before.removeAttribute("id");
+    before.after(into);
+    const filled = new MutationObserver(() => {
+        filled.disconnect();
+        before.remove();
+        into.hidden = false;
+    });
+    filled.observe(into, { childList: true });
+}
+
 async function open() {
     const now = ++opened;
     countPage();
@@ -42,17 +60,18 @@ async function open() {
     const known = named(page);
     leave?.();
     leave = undefined;
-    document.title = `${known.title} – Lamplight`;
-    for (const link of document.querySelectorAll("nav a")) {
-        const here = link.getAttribute("href") === `#/${page}`;
-        if (here) link.setAttribute("aria-current", "page");
+    // The file of a page has a better title than its kind.
+    if (now > 1 || location.hash.startsWith("#/")) document.title = page === "home" ? known.title : `${known.title} – Lamplight`;
+    for (const link of document.querySelectorAll<HTMLAnchorElement>("nav a")) {
+        if (routeOf(new URL(link.href))?.page === page) link.setAttribute("aria-current", "page");
         else link.removeAttribute("aria-current");
     }
     const into = document.createElement("main");
     into.id = "main";
     into.tabIndex = -1;
     into.append("Loading …");
-    document.querySelector("main")!.replaceWith(into);
+    const isOwn = now === 1 && document.querySelector("main")?.dataset.page === page;
+    replaceMain(into, isOwn);
     // Somebody who came by a link reads on at the new page.
     if (now > 1) into.focus({ preventScroll: true });
     try {
@@ -61,9 +80,32 @@ async function open() {
         else done?.();
         document.body.dataset.ready = page;
     } catch (error) {
-        into.replaceChildren(h("p", { class: "wrong", role: "alert" }, `This page could not be opened: ${reason(error)}`));
+        const why = h("p", { class: "wrong", role: "alert" }, `This page could not be opened: ${reason(error)}`);
+        // What can be read without a toolchain can still be read.
+        if (into.hidden) document.querySelector("main")!.prepend(why);
+        else into.replaceChildren(why);
     }
 }
+
+/** Follows links between pages of the site without loading the document again. */
+addEventListener("click", (event: MouseEvent) => {
+    const link = (event.target as Element | null)?.closest?.("a");
+    // With such a key, the browser opens it elsewhere.
+    const isElsewhere = event.button || event.ctrlKey || event.metaKey || event.shiftKey || event.altKey;
+    if (!link?.href || isElsewhere || event.defaultPrevented || link.target || link.download) return;
+    const url = new URL(link.href);
+    const to = routeOf(url);
+    if (!to || url.origin !== location.origin || !link.href.startsWith(ROOT)) return;
+    event.preventDefault();
+    const query = to.query.toString();
+    // Where the build wrote no files, the address names the page after `#`.
+    const next = new URL(url.hash.startsWith("#/") && query ? url.href : address(to.page, to.path, query));
+    next.search ||= location.search;
+    if (next.href === location.href) return;
+    history.pushState(null, "", next);
+    scrollTo(0, 0);
+    reopen();
+});
 
 const notice = document.querySelector<HTMLElement>("#notice")!;
 
@@ -91,8 +133,15 @@ document.querySelector(".skip")!.addEventListener("click", (event) => {
     document.querySelector<HTMLElement>("main")!.focus();
 });
 
-addEventListener("hashchange", () => {
+function reopen() {
     delete document.body.dataset.ready;
     open();
-});
+}
+
+// A step in the history announces itself by one of the two, or by both.
+for (const name of ["hashchange", "popstate"]) {
+    addEventListener(name, () => {
+        if (!isKnown()) reopen();
+    });
+}
 open();

@@ -1,5 +1,6 @@
 import type { ShaderResult } from "@lamplight/toolchain";
 import { code, h } from "./dom";
+import { languageOf } from "./highlight";
 
 /** The text of an entry point in a target: of a binary target, its words. */
 function written(entry: ShaderResult["entries"][number]): string {
@@ -20,10 +21,10 @@ export function texts(made: ShaderResult, target: string): { title: string; text
 
 /** What came of a shader: its texts in a target, and the reflection. */
 export function output(made: ShaderResult, target: string): HTMLElement[] {
-    if (target === "composed") return texts(made, target).map(({ title, text }) => code(text, title));
+    if (target === "composed") return texts(made, target).map(({ title, text }) => code(text, title, "wgsl"));
     return made.entries.flatMap((entry) => [
         h("h2", {}, `${entry.name} (${entry.stage})`),
-        code(written(entry), `${entry.name} in ${target}`),
-        h("details", {}, h("summary", {}, "Reflection"), code(JSON.stringify(entry.reflection, null, 2), "reflection")),
+        code(written(entry), `${entry.name} in ${target}`, languageOf(target)),
+        h("details", {}, h("summary", {}, "Reflection"), code(JSON.stringify(entry.reflection, null, 2), "reflection", "json")),
     ]);
 }

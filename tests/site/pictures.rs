@@ -80,7 +80,7 @@ fn compare(name: &str, data: &str, wanted: &Picture) -> Outcome {
     Ok(())
 }
 
-/// The picture of `lamplight render PRESET --size 192x192 --samples 4`.
+/// The picture of `lamplight render PRESET --size 256x192 --samples 4`.
 fn rendered(preset: &str) -> Result<Picture, Failed> {
     let drawn = on_thread(|| {
         let programs = Programs::load(LIBRARY_FILES).map_err(|(_, problems)| problems)?;
@@ -89,7 +89,7 @@ fn rendered(preset: &str) -> Result<Picture, Failed> {
         })?;
         let found = presets.iter().find(|one| one.name == preset).ok_or_else(Vec::new)?;
         let plan = Plan::of_preset(&programs, found, &probes)?;
-        let shot = shot(192).ok_or_else(Vec::new)?;
+        let shot = Shot { size: [256, 192], ..shot(192).ok_or_else(Vec::new)? };
         let painter = executors::vulkan::EXECUTOR.start().map_err(|_| Vec::new())?;
         picture::render_plan(painter.as_ref(), &programs, &plan, &shot)
     });

@@ -10,6 +10,7 @@ use lamplight::browser::BrowserPage;
 use libtest_mimic::Failed;
 use serde_json::{Value, json};
 
+use super::keys::press;
 use super::{Opened, Outcome, PATIENCE, text, wait, without_errors};
 
 const VALUE: &str = "document.querySelector('.eval output').textContent";
@@ -34,6 +35,64 @@ pub fn playground() -> Outcome {
     kept(&opened, &page)?;
     too_large(&page)?;
     replaced(&page)?;
+    without_errors(&mut page)?;
+    helped()?;
+    examples()
+}
+
+/// Names are completed, and an import is added; Format lays the text out. While a text has a mistake,
+/// its picture is marked as old.
+fn helped() -> Outcome {
+    // A server of its own has no files of before.
+    let opened = Opened::new()?;
+    let mut page = opened.page("playground.html")?;
+    wait(&page, &format!("{DRAWN} !== undefined"))?;
+    let content = "document.querySelector('.cm-content').textContent";
+    page.evaluate(&typed("let n =", " let q = f_schl"), PATIENCE)?;
+    let offered = "[...document.querySelectorAll('.cm-tooltip-autocomplete li')].map((it) => it.textContent).join()";
+    wait(&page, &format!("{offered}.includes('f_schlick')"))?;
+    wait(&page, "document.querySelector('.sketch.stale') !== null")?;
+    press(&page, "Enter")?;
+    wait(&page, &format!("{content}.includes('import lamplight::brdf::specular::f_schlick;')"))?;
+    page.evaluate(&typed("let q =", "(vec3f(0.04), 1.0, 0.5);"), PATIENCE)?;
+    wait(&page, "document.querySelector('.sketch.stale') === null")?;
+    page.evaluate(&typed("let l =", "    "), PATIENCE)?;
+    let formatted =
+        "[...document.querySelectorAll('.cm-line')].every((it) => !/ $/.test(it.textContent))";
+    assert_eq!(text(&page, &format!("String({formatted})"))?, "false");
+    page.evaluate(
+        "[...document.querySelectorAll('button')].find((it) => it.textContent === 'Format').click()",
+        PATIENCE,
+    )?;
+    wait(&page, formatted)?;
+    without_errors(&mut page)
+}
+
+/// Each example has no mistake, and its picture shows something.
+fn examples() -> Outcome {
+    let opened = Opened::new()?;
+    let mut page = opened.page("playground.html")?;
+    wait(&page, &format!("{DRAWN} !== undefined"))?;
+    let select =
+        "[...document.querySelectorAll('select')].find((it) => it.querySelector('optgroup'))";
+    let names = format!("[...{select}.querySelectorAll('optgroup option')].map((it) => it.value)");
+    let names: Vec<String> = serde_json::from_value(page.evaluate(&names, PATIENCE)?)?;
+    assert!(names.len() >= 20, "there are {} examples", names.len());
+    for name in names {
+        let choose = format!(
+            "(() => {{ delete document.querySelector('main').dataset.runs; const it = {select};
+                it.value = {}; it.dispatchEvent(new Event('change')); }})()",
+            Value::from(name.as_str())
+        );
+        page.evaluate(&choose, PATIENCE)?;
+        wait(&page, "document.querySelector('main').dataset.runs !== undefined")?;
+        wait(&page, &format!("{DRAWN} !== undefined"))?;
+        let status =
+            "[...document.querySelectorAll('.status')].map((it) => it.textContent).join('; ')";
+        let status = text(&page, status)?;
+        assert!(status.contains("no errors"), "{name}: {status}");
+        assert!(!status.contains("Every pixel"), "{name}: {status}");
+    }
     without_errors(&mut page)
 }
 

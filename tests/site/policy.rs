@@ -13,7 +13,10 @@ use super::{Outcome, PATIENCE, site, text, wait, without_errors};
 use crate::render;
 
 /// Pages of the site, each with what is there once it is complete.
-const PAGES: [(&str, &str); 8] = [
+const PAGES: [(&str, &str); 11] = [
+    ("", "document.querySelector('.stage canvas').dataset.drawn"),
+    ("functions/brdf/specular/d_ggx.html", "document.querySelector('.live')?.dataset.device"),
+    ("guide/cases.html", "document.querySelector('.neighbours')"),
     ("#/catalogue/brdf::specular::blinn_phong", "document.querySelector('.live')?.dataset.device"),
     (
         "#/programs/forward?key=shadow=pcf_3x3",

@@ -7,10 +7,13 @@ use super::{Opened, Outcome, PATIENCE, text, wait, without_errors};
 
 const PICTURE: &str = "document.querySelector('canvas').toDataURL()";
 
+/// Whether the last picture has come, with smooth edges: it follows a quick one.
+const SMOOTH: &str = "document.querySelector('canvas')?.dataset.smooth !== undefined
+    && document.querySelector('canvas').dataset.smooth === document.querySelector('canvas').dataset.drawn";
+
 /// Whether there is another picture. A slow device shows a coarse one first, which does not count.
 fn other_picture(than: String) -> String {
-    let is_whole = "document.querySelector('canvas').dataset.coarse === undefined";
-    format!("{is_whole} && {PICTURE} !== {}", Value::from(than))
+    format!("{SMOOTH} && {PICTURE} !== {}", Value::from(than))
 }
 
 /// Switching an axis changes the picture and the outputs, and the axis says what it costs. Values
@@ -19,7 +22,7 @@ fn other_picture(than: String) -> String {
 pub fn programs() -> Outcome {
     let opened = Opened::new()?;
     let mut page = opened.page("#/programs/forward?scene=casters")?;
-    wait(&page, "document.querySelector('canvas').dataset.drawn !== undefined")?;
+    wait(&page, SMOOTH)?;
     let before = text(&page, PICTURE)?;
     let greyed = "[...document.querySelectorAll('[data-axis=shadow_light] option, [data-axis=frequency] option, [data-axis=lights] option')]
         .filter((it) => it.disabled && it.title.endsWith('.')).length";
@@ -38,6 +41,7 @@ pub fn programs() -> Outcome {
     assert_ne!(before, text(&page, PICTURE)?, "the shadow does not change the picture");
     assert!(page.evaluate(greyed, PATIENCE)?.as_u64() > Some(0), "no value says why it is greyed");
     wait(&page, &format!("{outputs} !== {}", Value::from(written)))?;
+    wait(&page, SMOOTH)?;
     let shadowed = text(&page, PICTURE)?;
     let cost = "document.querySelector('[data-axis=shadow]').closest('label').textContent";
     assert!(text(&page, cost)?.contains("cycles"), "the axis `shadow` says no cost");
@@ -59,7 +63,31 @@ pub fn programs() -> Outcome {
     without_errors(&mut page)?;
     let again = opened.page(&link)?;
     wait(&again, &format!("{PICTURE} === {}", Value::from(moved)))?;
-    compared(&again, &choose("shadow", "none"))
+    compared(&again, &choose("shadow", "none"))?;
+    enabled(&opened)
+}
+
+/// Axes are in groups. A value that needs others has a button that sets all of them.
+fn enabled(opened: &Opened) -> Outcome {
+    let mut page = opened.page("#/programs/forward")?;
+    let groups = "[...document.querySelectorAll('form legend')].map((it) => it.textContent).join()";
+    wait(&page, &format!("{groups} !== ''"))?;
+    let found = text(&page, groups)?;
+    assert!(found.starts_with("Light,Surface,Layers of glTF,Shadow"), "found `{found}`");
+    let axis = "document.querySelector('[data-axis=clearcoat]')";
+    assert_eq!(text(&page, &format!("String({axis}.value.includes('clearcoat'))"))?, "false");
+    page.evaluate(
+        &format!("{axis}.closest('div').querySelector('.blocked').open = true"),
+        PATIENCE,
+    )?;
+    let button = format!("{axis}.closest('div').querySelector('.blocked button')");
+    wait(&page, &format!("{button} !== null"))?;
+    let words = text(&page, &format!("{button}.textContent"))?;
+    assert!(words.contains("metallic_roughness") && words.contains("specular = ggx"), "{words}");
+    assert!(words.starts_with("needs ") && words.ends_with(": set"), "found `{words}`");
+    page.evaluate(&format!("{button}.click()"), PATIENCE)?;
+    wait(&page, "document.querySelector('canvas').dataset.key?.includes('clearcoat')")?;
+    without_errors(&mut page)
 }
 
 /// After a comparison begins and an axis is switched, the lines that only one text has are marked.

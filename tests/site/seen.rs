@@ -26,7 +26,8 @@ const CONTRAST: f64 = 4.5;
 /// A page by its name, its address, and what is there once it is complete.
 type Shown = (&'static str, &'static str, &'static str);
 
-const PAGES: [Shown; 5] = [
+const PAGES: [Shown; 6] = [
+    ("home", "", "document.querySelector('.stage canvas').dataset.drawn"),
     (
         "catalogue",
         "#/catalogue/brdf::specular::blinn_phong",
@@ -87,7 +88,8 @@ fn small_and_own(page: &BrowserPage, name: &str) -> Outcome {
     for entry in loaded.as_array().into_iter().flatten() {
         let (Some(file), Some(bytes)) = (entry[0].as_str(), entry[1].as_u64()) else { continue };
         assert!(file.starts_with(&origin), "{name} loads {file}");
-        first += if file.ends_with(".wasm") { 0 } else { bytes };
+        let is_toolchain = file.ends_with(".wasm") || file.ends_with(".packed");
+        first += if is_toolchain { 0 } else { bytes };
     }
     assert!(first > 0, "{name} loads nothing");
     assert!(first < FIRST_VIEW, "{name} loads {first} bytes before the toolchain");
@@ -104,7 +106,7 @@ const SHIFTED: &str = "[...document.querySelectorAll('.cm-lineNumbers .cm-gutter
 /// What differs from run to run, or with every new axis, is not compared. The pictures of the
 /// gallery are drawn one after another, and compared in `site::pictures`.
 const HIDE: &str = "document.head.insertAdjacentHTML('beforeend',
-    '<style>.status, .note, .axes, .cm-cursorLayer, .texts, .card canvas { visibility: hidden }</style>')";
+    '<style>.status, .note, .axes, .cm-cursorLayer, .texts, .card canvas, .card img, .stage canvas { visibility: hidden }</style>')";
 
 /// Pictures are compared in cells of this many pixels, so that the edges of letters do not count.
 const CELL: u32 = 8;
@@ -171,6 +173,21 @@ fn in_scheme(page: &BrowserPage, scheme: &str) -> Outcome {
     Ok(())
 }
 
+/// The colours of texts, those of code among them.
+const INKS: [&str; 11] = [
+    "--ink",
+    "--quiet",
+    "--accent",
+    "--wrong",
+    "--added",
+    "--tok-keyword",
+    "--tok-type",
+    "--tok-number",
+    "--tok-string",
+    "--tok-attribute",
+    "--tok-function",
+];
+
 /// Every colour of text has enough contrast with what is behind it, in light and dark.
 fn readable(opened: &Opened) -> Outcome {
     let page = opened.page("#/guide")?;
@@ -184,7 +201,7 @@ fn readable(opened: &Opened) -> Outcome {
             let value = text(&page, &value)?;
             luminance(&value).ok_or_else(|| format!("{name} is `{value}`").into())
         };
-        for ink in ["--ink", "--quiet", "--accent", "--wrong", "--added"] {
+        for ink in INKS {
             for paper in ["--paper", "--card"] {
                 let (a, b) = (color(ink)?, color(paper)?);
                 let contrast = (a.max(b) + 0.05) / (a.min(b) + 0.05);

@@ -35,7 +35,8 @@ pub fn path_of_address(address: &str) -> Option<PathBuf> {
         bytes.push(u8::from_str_radix(std::str::from_utf8(&digits).ok()?, 16).ok()?);
     }
     let path = PathBuf::from(String::from_utf8(bytes).ok()?);
-    path.is_absolute().then_some(path)
+    // WebAssembly has no files, but addresses that begin at a root.
+    (path.is_absolute() || cfg!(target_family = "wasm") && path.has_root()).then_some(path)
 }
 
 /// The byte of a position; the end of the line or the text where it is beyond.

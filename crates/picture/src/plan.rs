@@ -42,6 +42,8 @@ pub struct Changes {
     pub lamps: BTreeMap<usize, DVec3>,
     /// Numbers of uniforms by path, such as `lamps.lights[2].color`.
     pub uniforms: BTreeMap<String, Vec<f64>>,
+    /// How far the viewer has walked around the point that is looked at, and up, in radians.
+    pub turn: [f64; 2],
 }
 
 #[derive(Debug, Clone)]
@@ -168,6 +170,9 @@ impl Plan {
             if let Some(lamp) = scene.lamps.get_mut(*index) {
                 lamp.position = *place;
             }
+        }
+        if self.changes.turn != [0.0; 2] {
+            scene.eye = scene.eye.turned(self.changes.turn);
         }
         match self.lit() {
             Some(lit) => with_numbers(scene, &lit.needs),

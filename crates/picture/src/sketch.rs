@@ -95,7 +95,7 @@ const TRIPS: u32 = 4096;
 pub(crate) const UNIFORM_BYTES: u32 = 64 << 10;
 
 /// How many uniforms get controls.
-const LISTED: usize = 256;
+pub(crate) const LISTED: usize = 256;
 
 /// The name that the stage has while it is drawn.
 const ENTRY: &str = "fs_main";

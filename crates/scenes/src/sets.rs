@@ -317,6 +317,20 @@ impl Eye {
     pub fn view(&self) -> DMat4 {
         look_at(self.position, self.target, DVec3::Y)
     }
+
+    /// The viewer after a walk around the point that is looked at, and up, by angles in radians. The
+    /// distance stays, and the viewer never stands above or below that point.
+    #[must_use]
+    pub fn turned(self, [around, up]: [f64; 2]) -> Self {
+        const STEEPEST: f64 = 1.5;
+        let way = self.position - self.target;
+        let flat = way.x.hypot(way.z);
+        let (angle, height) = (way.x.atan2(way.z) + around, way.y.atan2(flat));
+        let height = (height + up).clamp(-STEEPEST, STEEPEST);
+        let (sin, cos) = height.sin_cos();
+        let direction = DVec3::new(angle.sin() * cos, sin, angle.cos() * cos);
+        Self { position: self.target + direction * way.length(), ..self }
+    }
 }
 
 impl Scene {

@@ -16,6 +16,13 @@ export interface Device {
  * were read. Some compile only when they draw for the first time. */
 export const spent = { compiling: 0, drawing: 0 };
 
+/** A text that the browser refuses, with the line of it that the browser names. */
+export class RefusedText extends Error {
+    constructor(message: string, readonly line: string) {
+        super(`the browser refuses the shader: ${message}`);
+    }
+}
+
 /** What pixels hold that nothing covers. */
 export const SENTINEL = 0xdeadbeef;
 

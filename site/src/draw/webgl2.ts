@@ -1,6 +1,6 @@
 // Drawings on WebGL2.
 import type { Drawing, SamplerInfo, Stage, TextureInfo } from "@lamplight/toolchain";
-import { type Device, type Frames, SENTINEL, buffers, floats, spent } from "./common";
+import { type Device, type Frames, RefusedText, SENTINEL, buffers, floats, spent } from "./common";
 
 type Slot = { group: number; binding: number; index?: number; name?: string };
 type Combined = { texture: [number, number]; sampler?: [number, number]; name: string };
@@ -86,7 +86,7 @@ function linked(gl: WebGL2RenderingContext, programs: Map<string, WebGLProgram>,
         const shader = gl.createShader(kind)!;
         gl.shaderSource(shader, text);
         gl.compileShader(shader);
-        if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader) ?? "");
+        if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw refusal(gl.getShaderInfoLog(shader) ?? "", text);
         gl.attachShader(program, shader);
         gl.deleteShader(shader);
     }
@@ -94,6 +94,12 @@ function linked(gl: WebGL2RenderingContext, programs: Map<string, WebGLProgram>,
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program) ?? "");
     programs.set(key, program);
     return program;
+}
+
+/** What the browser says of a text that it refuses: `ERROR: 0:12: 'x' : undeclared identifier`. */
+function refusal(log: string, text: string): RefusedText {
+    const [, line, message] = /^ERROR: \d+:(\d+): (.*)/m.exec(log) ?? [];
+    return new RefusedText(message ?? log, text.split("\n")[Number(line) - 1] ?? "");
 }
 
 function boundBlocks(gl: WebGL2RenderingContext, program: WebGLProgram, stages: Stage[]): Map<string, number> {

@@ -1,6 +1,6 @@
 // Drawings on WebGPU.
 import type { Drawing, SamplerInfo, TextureInfo } from "@lamplight/toolchain";
-import { type Device, type Frames, SENTINEL, buffers, floats, half, same, spent } from "./common";
+import { type Device, type Frames, RefusedText, SENTINEL, buffers, floats, half, same, spent } from "./common";
 
 /** Depth cannot be copied into a texture, only drawn. */
 const DEPTH = `
@@ -157,10 +157,11 @@ function prepared({ device, pipelines }: Kept, drawing: Drawing) {
     const known = pipelines.get(key);
     if (known) return known;
     if (pipelines.size > 64) pipelines.clear();
+    const modules = [vertex, ...(fragment ? [fragment] : [])].map(({ text }) => ({ text, module: device.createShaderModule({ code: text }) }));
     const made = device.createRenderPipelineAsync({
         layout: "auto",
         vertex: {
-            module: device.createShaderModule({ code: vertex.text }),
+            module: modules[0].module,
             entryPoint: vertex.native.entry_name,
             buffers: attributes.length ? [{
                 arrayStride: meshes[0].stride,
@@ -170,7 +171,7 @@ function prepared({ device, pipelines }: Kept, drawing: Drawing) {
             }] : [],
         },
         fragment: fragment && {
-            module: device.createShaderModule({ code: fragment.text }),
+            module: modules[1].module,
             entryPoint: fragment.native.entry_name,
             targets: Array.from({ length: drawing.targets }, () => ({ format: "rgba32uint" as const })),
         },
@@ -179,10 +180,20 @@ function prepared({ device, pipelines }: Kept, drawing: Drawing) {
             format: "depth32float", depthWriteEnabled: true, depthCompare: "less",
             depthBias: Math.trunc(offset[1]), depthBiasSlopeScale: offset[0],
         } : undefined,
-    });
+    }).catch(async (error) => { throw await refusal(modules) ?? error; });
     pipelines.set(key, made);
     made.catch(() => pipelines.delete(key));
     return made;
+}
+
+/** What the browser says of texts that it refuses. */
+async function refusal(modules: { text: string; module: GPUShaderModule }[]): Promise<RefusedText | undefined> {
+    for (const { text, module } of modules) {
+        const { messages } = await module.getCompilationInfo();
+        const found = messages.find(({ type }) => type === "error");
+        if (found) return new RefusedText(found.message, text.split("\n")[found.lineNum - 1] ?? "");
+    }
+    return undefined;
 }
 
 function bindings(drawing: Drawing): Set<string> {

@@ -1,6 +1,6 @@
 import type { CurveResult, ItemInfo, LibraryInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
-import { choose, code, h, reason, remember, repeated, route, sentence, visit } from "../dom";
+import { address, choose, code, h, reason, remember, repeated, route, sentence, visit } from "../dom";
 import { packed } from "../pack";
 import { type Computed, computed } from "../parts/computed";
 import { latest } from "../parts/latest";
@@ -17,19 +17,20 @@ export async function page(into: HTMLElement) {
     const items = new Map(modules.flatMap((module) => module.items.map((item) => [item.path, item])));
     const { path, query } = route();
     const list = h("nav", { class: "list", "aria-label": "Functions" });
-    const place = h("article", { class: "entry" });
+    // What the file of the page has of the function stays until it is live.
+    const place = document.querySelector<HTMLElement>("main[data-page=catalogue] article.entry") ?? h("article", { class: "entry" });
     const search = h("input", {
         type: "search", placeholder: "word, formula, author, technique", "aria-label": "Search the library",
         value: query.get("q") ?? "", oninput: () => filter(),
     });
     const link = (item: ItemInfo) => h("a", {
-        href: `#/catalogue/${item.path}`, title: item.summary,
+        href: address("catalogue", item.path), title: item.summary,
         "aria-current": item.path === place.dataset.path ? "page" : undefined,
         onclick: (event: MouseEvent) => {
             // With such a key, the browser opens it elsewhere.
             if (event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
             event.preventDefault();
-            visit(`#/catalogue/${item.path}`);
+            visit(address("catalogue", item.path));
             go(item.path);
         },
     }, item.name);
@@ -64,14 +65,14 @@ export async function page(into: HTMLElement) {
         remember(into, "catalogue", path, { q: search.value.trim() });
         document.title = `${item.name} – Catalogue – Lamplight`;
         for (const one of list.querySelectorAll("a")) {
-            if (one.getAttribute("href") === `#/catalogue/${path}`) one.setAttribute("aria-current", "page");
+            if (one.getAttribute("href") === address("catalogue", path)) one.setAttribute("aria-current", "page");
             else one.removeAttribute("aria-current");
         }
         await entry(place, item, items, isChosen);
     }
     // There are many functions to pass for somebody who goes by keys.
     const skip = h("a", {
-        class: "skip", href: "#/catalogue",
+        class: "skip", href: address("catalogue"),
         onclick: (event: Event) => { event.preventDefault(); place.querySelector("h1")?.focus(); },
     }, "Skip the list");
     into.replaceChildren(h("div", { class: "columns" }, h("aside", {}, search, skip, list), place));
@@ -94,14 +95,14 @@ async function entry(place: HTMLElement, item: ItemInfo, items: Map<string, Item
         ...item.doc.map((text) => h("p", {}, ...sentence(text))),
         live, seen,
         h("h2", {}, "Use it"),
-        code(item.import, "import in WESL"), code(item.include, "include in GLSL"),
+        code(item.import, "import in WESL", "wgsl"), code(item.include, "include in GLSL", "glsl"),
         item.members.length ? h("dl", {}, ...item.members.flatMap((member) => [
             h("dt", {}, h("code", {}, `${member.name}: ${member.type}`)), h("dd", {}, ...sentence(member.doc)),
         ])) : undefined!,
         ...[section("Source", item.source), section("Edges", item.edges), section("Error model", item.errorModel),
             section("Used by", users.join(", "))].filter((one) => one !== undefined),
-        h("h2", {}, "WESL"), code(written.wesl, "WESL source"),
-        ...(written.glsl ? [h("h2", {}, "GLSL"), code(written.glsl, "GLSL source")] : []),
+        h("h2", {}, "WESL"), code(written.wesl, "WESL source", "wgsl"),
+        ...(written.glsl ? [h("h2", {}, "GLSL"), code(written.glsl, "GLSL source", "glsl")] : []),
     );
     if (isChosen) {
         title.focus({ preventScroll: true });
@@ -129,11 +130,11 @@ function preview(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo
     // The plot knows which number shows something.
     const { parameter, values = [] } = item.plot ?? {};
     if (parameter && values.length) look.uniforms = { ...look.uniforms, [`knobs.${parameter}`]: [values[Math.floor(values.length / 2)]] };
-    const link = h("a", { href: "#/playground" }, "Open in the playground");
+    const link = h("a", { href: address("playground") }, "Open in the playground");
     const sketch = new Sketch(() => look, () => {}, false);
     const draw = async () => {
         const files = { "preview.wesl": stage(item, chosen, structs) };
-        link.href = `#/playground?state=${await packed(JSON.stringify({ files, open: "preview.wesl", look }))}`;
+        link.href = address("playground", "", `state=${await packed(JSON.stringify({ files, open: "preview.wesl", look }))}`);
         await sketch.draw({ files, root: "preview.wesl" });
     };
     const source = (parameter: Parameter) => parameter.sources.length > 1 ? [choose(
@@ -152,6 +153,13 @@ function preview(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo
     seen.observe(sketch.element);
 }
 
+/** A value between two of those that have curves, so that the slider's curve is seen beside them. */
+function between(values: number[]): number {
+    const sorted = [...values].sort((one, other) => one - other);
+    const middle = Math.floor(sorted.length / 2);
+    return middle ? (sorted[middle - 1] + sorted[middle]) / 2 : sorted[0];
+}
+
 /** The plot with its parameters as sliders, and the value at one place in f64 and on the GPU. */
 async function curves(live: HTMLElement, item: ItemInfo) {
     const info = item.plot!;
@@ -164,7 +172,7 @@ async function curves(live: HTMLElement, item: ItemInfo) {
     const span = info.values.length ? Math.max(...info.values) - Math.min(...info.values) || 1 : 1;
     const x = slider(info.label, info.from, info.to, info.from + Math.round(0.4 * steps) / steps * (info.to - info.from), steps);
     const own = info.parameter && info.values.length
-        ? slider(info.parameter, Math.min(...info.values), Math.max(...info.values, Math.min(...info.values) + span), info.values[Math.floor(info.values.length / 2)])
+        ? slider(info.parameter, Math.min(...info.values), Math.max(...info.values, Math.min(...info.values) + span), between(info.values))
         : undefined;
     const note = h("p", { class: "note" });
     let gpu: Computed | undefined;

@@ -1,56 +1,85 @@
 import { OWN, toolchain } from "../client";
-import { h, reason } from "../dom";
-import { NO_DEVICE, device, picture, show } from "../draw";
+import { ROOT, h, reason, remember, route } from "../dom";
+import { NO_DEVICE, device } from "../draw";
+import { Card } from "../parts/card";
 import { latest } from "../parts/latest";
+import { COMPARED, GROUPS } from "../parts/titles";
 
 /** How far the middle of an element is from the middle of the window, in pixels. */
-function distance(element: Element): number {
+function distance({ element }: Card): number {
     const { top, bottom } = element.getBoundingClientRect();
     return Math.abs((top + bottom - innerHeight) / 2);
 }
 
 /** What the user most likely looks at. */
-const nearest = (some: Set<HTMLCanvasElement>): HTMLCanvasElement | undefined =>
-    [...some].sort((a, b) => distance(a) - distance(b))[0];
+const nearest = (some: Set<Card>): Card | undefined => [...some].sort((a, b) => distance(a) - distance(b))[0];
 
 /** Where the build of the published site draws the large pictures. A quick build has none. */
 const LARGE = import.meta.env.VITE_LARGE_PICTURES as string | undefined;
 
-/** Every published example, drawn where it is seen. */
+/** A part of the page that can be left out, with a heading. */
+const part = (title: string, members: HTMLElement[], kind = "cards") =>
+    h("section", { "aria-label": title }, h("h2", {}, title), h("div", { class: kind }, ...members));
+
+/** Every published example, drawn where it is seen, and the comparisons. */
 export async function page(into: HTMLElement): Promise<(() => void) | void> {
     const { presets } = await toolchain.call(OWN, "studio");
-    const cards = presets.map((preset) => {
-        const canvas = h("canvas", { width: 192, height: 192, role: "img", "aria-label": preset.doc, "data-preset": preset.name });
-        return h("article", { class: "card" },
-            h("a", { href: `#/programs/${preset.program}?preset=${preset.name}`, "aria-label": preset.name }, canvas, h("h2", {}, preset.name)),
-            h("p", {}, preset.doc), h("p", { class: "note" }, preset.source));
+    const groups = GROUPS.map(({ title, presets: own }) => ({
+        title, cards: own.flatMap(([name]) => presets.filter((preset) => preset.name === name)).map((preset) => new Card(preset)),
+    }));
+    const cards = groups.flatMap((group) => group.cards);
+    const parts = groups.map(({ title, cards }) => ({ cards, section: part(title, cards.map(({ element }) => element)) }));
+    const compared = COMPARED.map(([name, title]) => h("figure", { class: "strip" },
+        h("img", { src: `${ROOT}pictures/compared-${name}.png`, alt: `Comparison: ${title}`, loading: "lazy" }), h("figcaption", {}, title)));
+    const comparisons = part("Comparisons", compared, "strips");
+    const count = h("p", { class: "note", role: "status" });
+    const search = h("input", {
+        type: "search", placeholder: "technique, book, axis", "aria-label": "Search the gallery", value: route().query.get("q") ?? "", oninput: () => filter(),
     });
-    const large = LARGE ? [" ", h("a", { href: LARGE }, "Large pictures, with the composed texts.")] : [];
-    const about = h("p", {}, "The examples that the library’s functions were published with, drawn by your browser.", ...large);
-    into.replaceChildren(h("h1", {}, "Gallery"), about, h("div", { class: "cards" }, ...cards));
-    if (!await device()) return into.querySelector(".cards")!.before(h("p", { class: "wrong", role: "status" }, NO_DEVICE));
+    function filter() {
+        const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+        remember(into, "gallery", "", { q: search.value.trim() });
+        const fits = (text: string) => words.every((word) => text.includes(word));
+        for (const { cards, section } of parts) {
+            for (const card of cards) card.element.hidden = !fits(card.words);
+            section.hidden = cards.every(({ element }) => element.hidden);
+        }
+        compared.forEach((figure) => { figure.hidden = !fits(figure.textContent!.toLowerCase()); });
+        comparisons.hidden = compared.every((figure) => figure.hidden);
+        const shown = cards.filter(({ element }) => !element.hidden).length;
+        count.textContent = words.length ? `${shown} of ${cards.length} pictures` : "";
+    }
+    const links = parts.map(({ section }) => h("button", {
+        type: "button", class: "small", onclick: () => section.scrollIntoView({ behavior: "smooth" }),
+    }, section.getAttribute("aria-label")!));
+    const large = LARGE ? [" ", h("a", { href: `${ROOT}${LARGE}`, target: "_self" }, "Large pictures, with the composed texts.")] : [];
+    into.replaceChildren(h("h1", {}, "Gallery"),
+        h("p", {}, "The examples that the library’s functions were published with, drawn by your browser. A click on a picture shows the values of that pixel, line by line.", ...large),
+        search, count, h("div", { class: "row jumps" }, ...links), ...parts.map(({ section }) => section), comparisons);
+    filter();
+    if (!await device()) return count.before(h("p", { class: "note", role: "status" }, `${NO_DEVICE} These are stored ones.`));
     // One after another, from the middle of the window outwards, and only what is still in view.
-    const waiting = new Set<HTMLCanvasElement>();
+    const waiting = new Set<Card>();
     const draw = latest(async () => {
-        for (let canvas = nearest(waiting); canvas; canvas = nearest(waiting)) {
-            waiting.delete(canvas);
-            seen.unobserve(canvas);
+        for (let card = nearest(waiting); card; card = nearest(waiting)) {
+            waiting.delete(card);
+            seen.unobserve(card.element);
             try {
-                show(canvas, await picture({ preset: canvas.dataset.preset, width: 192, height: 192, samples: 4 }));
-                canvas.dataset.drawn = "1";
+                await card.draw();
             } catch (error) {
-                canvas.replaceWith(h("p", { class: "wrong" }, reason(error)));
+                card.element.prepend(h("p", { class: "wrong" }, reason(error)));
             }
         }
     });
+    const byElement = new Map<Element, Card>(cards.map((card) => [card.element, card]));
     const seen = new IntersectionObserver((entries) => {
         for (const { isIntersecting, target } of entries) {
-            if (isIntersecting) waiting.add(target as HTMLCanvasElement);
-            else waiting.delete(target as HTMLCanvasElement);
+            if (isIntersecting) waiting.add(byElement.get(target)!);
+            else waiting.delete(byElement.get(target)!);
         }
         draw();
     });
-    into.querySelectorAll("canvas").forEach((canvas) => seen.observe(canvas));
+    cards.forEach(({ element }) => seen.observe(element));
     return () => {
         seen.disconnect();
         waiting.clear();

@@ -4,13 +4,16 @@ import { EditorState } from "@codemirror/state";
 import { EditorView, drawSelection, highlightActiveLine, highlightSpecialChars, keymap, lineNumbers } from "@codemirror/view";
 import type { Diagnostic } from "@lamplight/toolchain";
 import { OWN, toolchain, typed } from "../client";
-import { choose, h, reason, remember, route } from "../dom";
+import { choose, h, reason, remember, route, say } from "../dom";
 import { output } from "../output";
 import { zip } from "../pack";
-import { FIRST, earlier, keep, linked, opened } from "../parts/project";
+import { FIRST, earlier, keep, keepEarlier, linked, opened } from "../parts/project";
 import { LARGEST, type Project } from "../parts/state";
 import { Files } from "../parts/files";
+import { EXAMPLES } from "../parts/examples";
+import { format, languages as known } from "../parts/language";
 import { latest } from "../parts/latest";
+import { nearest } from "../parts/nearest";
 import type { Moment } from "../parts/lines";
 import { Listed } from "../parts/listed";
 import { Sketch } from "../parts/sketch";
@@ -33,7 +36,15 @@ export async function page(into: HTMLElement, given?: Project) {
         listed.show(moment);
     };
     const listed = new Listed((file) => Object.hasOwn(state.files, file));
-    const sketch = new Sketch(() => state.look, () => { save(); link(); }, true, shown);
+    const sketch = new Sketch(() => state.look, () => { save(); link(); }, true, shown, (error) => {
+        // The browser speaks of what was made of the text: the line that is most like it is meant.
+        const line = nearest(editor.state.doc.toString(), error.line);
+        const { from, to } = editor.state.doc.line(line ?? 1);
+        if (line !== undefined) editor.dispatch(setDiagnostics(editor.state, [{ from, to, severity: "error", message: error.message }]));
+        const where = line === undefined ? "" : `${state.open}:${line}: `;
+        problems.replaceChildren(h("li", { class: "error" }, h("code", {}, where), `${error.message} `, h("span", { class: "note" }, "In the output: ", h("code", {}, error.line.trim()))));
+        status.textContent = "errors, which only the browser finds";
+    });
     const panel = h("div", { class: "editor", id: "text", role: "tabpanel", "aria-label": "Text of the open file" });
     const leaving = h("p", { class: "note", id: "leaving" }, "Tab indents. Escape and then Tab leaves the editor.");
     const editor = new EditorView({ parent: panel });
@@ -52,7 +63,7 @@ export async function page(into: HTMLElement, given?: Project) {
         doc: state.files[state.open] ?? "",
         extensions: [
             // Bidirectional formatting characters and control characters are seen, so that a text reads as it is.
-            highlightSpecialChars(), lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), values, EditorView.lineWrapping,
+            highlightSpecialChars(), lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), values, EditorView.lineWrapping, known(state),
             EditorView.contentAttributes.of({ "aria-label": `Text of ${state.open}`, "aria-describedby": "leaving" }),
             EditorState.transactionFilter.of((change) => {
                 // Files that are too large already can be made smaller.
@@ -170,6 +181,32 @@ export async function page(into: HTMLElement, given?: Project) {
     const restart = () => {
         if (confirm("Discard your files, and begin with the first example again?")) replace(FIRST);
     };
+    // What somebody typed stays within reach, as if a link had been opened.
+    const example: HTMLSelectElement = h("select", {
+        onchange: () => {
+            const found = EXAMPLES.flatMap(({ examples }) => examples).find(({ name }) => name === example.value);
+            if (!found) return;
+            keepEarlier(JSON.stringify(state));
+            const [open] = Object.keys(found.files);
+            replace({ ...FIRST, files: found.files, open, target: state.target, expression: "1.0", look: found.look ?? {} });
+        },
+    }, h("option", { value: "" }, "choose one"), ...EXAMPLES.map(({ title, examples }) =>
+        h("optgroup", { label: title }, ...examples.map(({ name }) => h("option", { value: name }, name)))));
+    const share = h("button", {
+        onclick: async () => {
+            await link();
+            try {
+                await navigator.clipboard.writeText(location.href);
+                share.textContent = "Link copied";
+            } catch {
+                share.textContent = "Copy the address of this page";
+            }
+            say(share.textContent);
+        },
+    }, "Share");
+    const layOut = h("button", {
+        title: "Shift + Alt + F", onclick: async () => say(await format(editor, state) ? "The text is laid out." : "Nothing to lay out."),
+    }, "Format");
     const back = earlier().map((project, index) => h("button", { onclick: () => replace(project) },
         index ? `Back to ${Object.keys(project.files).join(", ")}` : "Back to my files before the link"));
     const expression = h("input", {
@@ -188,7 +225,7 @@ export async function page(into: HTMLElement, given?: Project) {
             h("div", {}, files.element, panel, leaving, status, problems),
             h("div", {},
                 h("div", { class: "row" },
-                    languages,
+                    h("label", {}, h("span", {}, "example"), example), languages, share, layOut,
                     h("button", { onclick: zipped }, "Save as zip"), h("button", { onclick: restart }, "Begin again"),
                     ...back),
                 unkept, sketch.element, listed.element,

@@ -1,7 +1,7 @@
 import type { CostInfo, PictureControls, PictureRequest, Point, ProgramInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
 import { choose, h, reason, remember, repeated, route } from "../dom";
-import { Screen, device, looked, picture } from "../draw";
+import { Screen, device, looked, picture, show } from "../draw";
 import { output, texts } from "../output";
 import { axes } from "../parts/axes";
 import { Lamps } from "../parts/lamps";
@@ -38,6 +38,9 @@ function begun(query: URLSearchParams, path: string, published?: { program: stri
 /** Pixels along the edges of the picture. */
 const SIZE = 384;
 
+/** How many places of each pixel are averaged for smooth edges. */
+const SAMPLES = 4;
+
 /** Letters of a key. The longest of the library's has some hundreds. */
 const LONGEST_KEY = 4096;
 
@@ -64,7 +67,7 @@ export async function page(into: HTMLElement) {
     const screen = new Screen(canvas);
     const over = h("div", { class: "picture" }, canvas);
     const status = h("p", { role: "status", class: "status" });
-    const form = h("form", { class: "axes", "aria-label": "Axes" });
+    const form = h("form", { "aria-label": "Axes" });
     const text = h("div", { class: "texts" });
     const info = h("p", { class: "note" });
     const costNote = h("p", { class: "note" });
@@ -93,11 +96,13 @@ export async function page(into: HTMLElement) {
         ...(state.environment && { environment: state.environment }), ...(state.preset && { preset: state.preset }), ...(state.scene && { scene: state.scene }),
         uniforms: state.set, lamps: state.lamps,
     });
+    /** The picture on the screen. */
+    let last: Omit<PictureRequest, "target"> | undefined;
     const listed = new Listed();
     const pixel = new Pixel(over, canvas, {
         size: [SIZE, SIZE], shown: (moment) => listed.show(moment),
-        run: (at) => looked(request(), (asked) => toolchain.call(OWN, "picturePixel", asked, at)),
-        marks: () => looked(request(), (asked) => toolchain.call(OWN, "pictureMarks", asked)),
+        run: (at) => looked(last ?? request(), (asked) => toolchain.call(OWN, "picturePixel", asked, at)),
+        marks: () => looked(last ?? request(), (asked) => toolchain.call(OWN, "pictureMarks", asked)),
     });
     // They are recorded, and do not change.
     const recorded = new Map<string, Promise<CostInfo>>();
@@ -118,6 +123,7 @@ export async function page(into: HTMLElement) {
                 wanted.controls ||= withControls;
                 return;
             }
+            last = requested;
             status.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms, ${requested.key || "default"}`;
             canvas.dataset.drawn = String(Number(canvas.dataset.drawn ?? 0) + 1);
             canvas.dataset.key = requested.key;
@@ -131,6 +137,16 @@ export async function page(into: HTMLElement) {
         lamps.show(controls);
         uniforms.show(controls.uniforms);
         canvas.dataset.controls = String(controls.uniforms.length);
+    }
+    /** The same picture again, with smooth edges: it comes after everything else. */
+    async function smooth(isOld: () => boolean) {
+        if (!last || !await device()) return;
+        const finer = { ...last, samples: SAMPLES };
+        const made = await picture(finer);
+        if (isOld()) return;
+        show(canvas, made);
+        last = finer;
+        canvas.dataset.smooth = canvas.dataset.drawn;
     }
     async function write() {
         if (!found.wesl) return;
@@ -189,6 +205,7 @@ export async function page(into: HTMLElement) {
         await draw(now.controls, isOld);
         if (isOld()) wanted.texts ||= now.texts;
         else if (now.texts) await write();
+        if (!isOld()) await smooth(isOld);
     }
     /** Without new texts, only the picture changes; while a lamp is dragged, its controls stay. */
     function set(change: Partial<State>, withTexts = true, withControls = true) {

@@ -18,11 +18,11 @@ export class Files {
     constructor(kept: Kept, changed: () => void) {
         this.#kept = kept;
         this.#changed = changed;
-        const button = (label: string, sign: string, onclick: () => void) =>
-            h("button", { type: "button", "aria-label": label, title: label, onclick }, sign);
-        this.#remove = button("Remove this file", "−", () => this.#removed());
-        this.element = h("div", { class: "files" }, this.#tabs, button("Add a file", "+", () => this.#added()),
-            button("Rename this file", "✎", () => this.#renamed()), this.#remove);
+        const button = (label: string, words: string, onclick: () => void) =>
+            h("button", { type: "button", class: "small", "aria-label": label, title: label, onclick }, words);
+        this.#remove = button("Remove this file", "Remove", () => this.#removed());
+        this.element = h("div", { class: "files" }, this.#tabs, button("Add a file", "Add", () => this.#added()),
+            button("Rename this file", "Rename", () => this.#renamed()), this.#remove);
     }
 
     show() {

@@ -1,5 +1,6 @@
 // A file that nobody edits, with the values of a run at the ends of its lines.
-import { h, scrolled } from "../dom";
+import { coloured, h, scrolled } from "../dom";
+import { languageOfFile } from "../highlight";
 import { type Line, headline, parts } from "./lines";
 
 /** What stands at the end of a line, with its marks in red. */
@@ -16,8 +17,9 @@ export class Listing {
     #lines: HTMLElement[];
 
     constructor(readonly file: string, text: string) {
+        const language = languageOfFile(file);
         this.#lines = text.replace(/\n$/, "").split("\n").map((line, index) =>
-            h("span", { class: "line", "data-line": index + 1 }, line));
+            h("span", { class: "line", "data-line": index + 1 }, ...coloured(line, language)));
         this.#text = scrolled(`Text of ${file}`, ...this.#lines);
         this.element = h("figure", { class: "listing" }, h("figcaption", {}, h("code", {}, file)), this.#text);
     }

@@ -14,7 +14,8 @@ fn fs_main(@location(0) normal: vec3f, @location(1) to_light: vec3f) -> @locatio
     let n = normalize(normal);
     let l = normalize(to_light);
     let light = lambert(n, l) + blinn_phong(n, l, vec3f(0.0, 0.0, 1.0), 32.0);
-    return vec4f(vec3f(light * falloff(length(to_light))), 1.0);
+    let warm = vec3f(1.0, 0.62, 0.32);
+    return vec4f(8.0 * warm * light * falloff(length(to_light)), 1.0);
 }
 `,
         "lamp.wesl": `import lamplight::lighting::attenuation::inverse_square;
@@ -132,7 +133,7 @@ function earlierTexts(): string[] {
 }
 
 /** The user's own files stay within reach, even if several links are opened and typed into. */
-function keepEarlier(text: string) {
+export function keepEarlier(text: string) {
     const all = [text, ...earlierTexts().filter((one) => one !== text)].slice(0, MOST_EARLIER);
     // Without room for them, what was typed last is still there until somebody types again.
     store(EARLIER, JSON.stringify(all), ALL);

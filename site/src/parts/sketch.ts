@@ -3,15 +3,17 @@ import type { SketchControls, SketchRequest } from "@lamplight/toolchain";
 import { type Limit, OWN, toolchain, typed } from "../client";
 import { choose, h, reason } from "../dom";
 import { Screen, device, sketch } from "../draw";
+import { RefusedText } from "../draw/common";
 import { latest } from "./latest";
 import type { Moment } from "./lines";
 import { Pixel, STILL } from "./pixel";
+import { Textures } from "./textures";
 import { Uniforms } from "./uniforms";
 
 /** What somebody chose, to be kept in a link. */
 export type Look = {
     model?: string; turn?: [number, number]; lamp?: [number, number, number]; exposure?: number;
-    inputs?: Record<string, string>; uniforms?: Record<string, number[]>;
+    inputs?: Record<string, string>; uniforms?: Record<string, number[]>; textures?: Record<string, string>;
 };
 
 type Shader = SketchRequest["shader"];
@@ -23,6 +25,16 @@ const SIZE = 320;
 const TURNS: Record<string, [number, number]> = {
     ArrowLeft: [0.1, 0], ArrowRight: [-0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1],
 };
+
+/** What a person has to know of a picture that shows nothing. */
+function onlyColour(canvas: HTMLCanvasElement): string | undefined {
+    const { data } = canvas.getContext("2d")!.getImageData(0, 0, canvas.width, canvas.height);
+    const words = new Uint32Array(data.buffer);
+    const isOne = words.every((word) => word === words[0]);
+    if (!isOne) return undefined;
+    const [r, g, b] = data;
+    return r + g + b === 0 ? "Every pixel is black." : `Every pixel has the colour rgb(${r}, ${g}, ${b}).`;
+}
 
 export class Sketch {
     readonly element: HTMLElement;
@@ -55,13 +67,25 @@ export class Sketch {
         return input;
     });
     #pixel?: Pixel;
+    #textures: Textures;
+    #refused: (error: RefusedText) => void;
     #known = "";
     #sources = "";
+    /** Seconds, and whether they pass. */
+    #time = 1;
+    #isPlaying = false;
+    /** Whether somebody stopped the time, or it began by itself once. */
+    #isBegun = false;
+    #play = h("button", { type: "button", hidden: true, onclick: () => this.#setPlaying(!this.#isPlaying) });
 
     /** `changed` is called when somebody changed the look. A text that somebody types has inputs to
      * choose, and is given up if it takes long. Where there is room for what a pixel's run gives, `shown`
-     * gets it. */
-    constructor(look: () => Look, changed: () => void, isTyped = true, shown?: (moment: Moment | undefined) => void) {
+     * gets it. `refused` gets what only the browser says of the text. */
+    constructor(
+        look: () => Look, changed: () => void, isTyped = true, shown?: (moment: Moment | undefined) => void,
+        refused: (error: RefusedText) => void = () => {},
+    ) {
+        this.#refused = refused;
         this.#keptLook = look;
         this.#inputs.hidden = !isTyped;
         this.#isTyped = isTyped;
@@ -69,6 +93,10 @@ export class Sketch {
         this.#uniforms = new Uniforms(this.#numbers, (path, numbers) => {
             this.#look.uniforms = { ...this.#look.uniforms, [path]: numbers };
             this.#again(false);
+        });
+        this.#textures = new Textures(() => this.#look.textures ?? {}, (textures) => {
+            this.#look.textures = textures;
+            this.#again(true);
         });
         const exposure = h("input", {
             type: "range", min: -4, max: 4, step: 0.25, "aria-label": "Exposure, in powers of two",
@@ -79,9 +107,9 @@ export class Sketch {
         if (shown) this.#pixel = this.#looked(over, shown);
         this.#listen();
         this.element = h("section", { class: "sketch", "aria-label": "Picture" }, over, this.#status, this.#pixel?.element,
-            h("div", { class: "row" }, this.#models, h("label", {}, h("span", {}, "exposure"), exposure),
+            h("div", { class: "row" }, this.#models, this.#play, h("label", {}, h("span", {}, "exposure"), exposure),
                 ...this.#lights.map((input) => h("label", {}, h("span", {}, input.ariaLabel!), input))),
-            this.#inputs, this.#numbers);
+            this.#numbers, this.#textures.element, this.#inputs);
     }
 
     /** Answers what runs for a pixel of the picture. */
@@ -96,14 +124,52 @@ export class Sketch {
         });
     }
 
-    /** The text has mistakes, so that there is no picture of it. */
+    /** The text has mistakes: the picture is that of an older one, and looks like it. */
     suspend(why: string) {
+        this.#setPlaying(false, false);
+        this.element.classList.add("stale");
         this.#pixel?.suspend(why);
     }
 
     #request() {
         const { turn = [0, 0.3], lamp = LAMP, ...rest } = this.#look;
-        return { ...rest, turn, lamp, shader: this.#shader!, size: SIZE, samples: 4 };
+        // An author's text may have a vertex stage, and its names say what it is given.
+        const own = this.#isTyped ? { own: true, time: this.#time } : {};
+        return { ...rest, ...own, turn, lamp, shader: this.#shader!, size: SIZE, samples: this.#isPlaying ? 1 : 4 };
+    }
+
+    /** Lets time pass, or stops it. `isBegun` says whether it stays so when the text is right again. */
+    #setPlaying(isPlaying: boolean, isBegun = true) {
+        if (isBegun) this.#isBegun = true;
+        const isChanged = isPlaying !== this.#isPlaying;
+        this.#isPlaying = isPlaying;
+        this.#play.textContent = isPlaying ? "Stop the time" : "Let time pass";
+        if (!isChanged) return;
+        this.element.dataset.playing = isPlaying ? "1" : undefined;
+        if (!isPlaying) {
+            delete this.element.dataset.playing;
+            if (isBegun) this.#run();
+            return;
+        }
+        let last = performance.now();
+        const step = async (now: number) => {
+            if (!this.#isPlaying || !this.element.isConnected) return;
+            this.#time += Math.max(0, now - last) / 1000;
+            last = now;
+            // Nobody sees a picture that is not in view.
+            if (!document.hidden) await this.#run();
+            requestAnimationFrame(step);
+        };
+        requestAnimationFrame(step);
+    }
+
+    /** Time begins to pass by itself, unless somebody prefers that nothing moves. */
+    #offerTime(hasTime: boolean) {
+        this.#play.hidden = !hasTime;
+        if (!hasTime) return this.#setPlaying(false, false);
+        const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
+        if (!this.#isBegun) this.#setPlaying(!isStill);
+        else this.#setPlaying(this.#isPlaying);
     }
 
     get #look(): Look {
@@ -173,13 +239,19 @@ export class Sketch {
             sketch({ ...request, size: SIZE / factor, samples: factor === 1 ? request.samples : 1 }, limit);
         const start = performance.now();
         try {
+            if (this.#isTyped) await this.#textures.send();
             if (withControls) this.#show(await toolchain.call(limit, "sketchControls", { ...request, target: "wgsl" }));
             if (!await this.#screen.show(take, isOld)) return;
+            this.element.classList.remove("stale");
             this.#canvas.dataset.drawn = String(Number(this.#canvas.dataset.drawn ?? 0) + 1);
-            this.#status.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms`;
+            const plain = this.#isTyped ? onlyColour(this.#canvas) : undefined;
+            this.#status.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms${plain ? `. ${plain}` : ""}`;
             this.#pixel?.renew();
         } catch (error) {
+            this.#setPlaying(false, false);
+            this.element.classList.add("stale");
             this.#status.textContent = reason(error);
+            if (error instanceof RefusedText) this.#refused(error);
             this.#pixel?.suspend("There is no picture.");
             this.#controls ||= withControls;
         }
@@ -187,11 +259,14 @@ export class Sketch {
 
     #show(controls: SketchControls) {
         if (controls.diagnostics.length) return;
-        this.#uniforms.show(controls.uniforms);
+        this.#uniforms.show(controls.uniforms, controls.isLinear);
+        this.#textures.show(controls.textures);
+        this.#offerTime(controls.uniforms.some(({ role }) => role === "time"));
         const models = controls.models.join();
         if (models !== this.#known) {
-            this.#models.replaceChildren(choose("model", controls.models, this.#look.model ?? controls.models[0],
-                (model) => { this.#look.model = model; this.#again(false); }));
+            const all = this.#isTyped ? ["", ...controls.models] : controls.models;
+            this.#models.replaceChildren(choose("model", all, this.#look.model ?? all[0],
+                (model) => { this.#look.model = model; this.#again(true); }, "what fits"));
             this.#known = models;
         }
         const sources = controls.inputs.map((one) => `${one.name}:${one.type}`).join();

@@ -36,7 +36,7 @@ const tableOf = (words: string, is: Kind["is"]): Kind =>
 
 const LOOK: Record<keyof Look, Kind> = {
     model: TEXT, turn: list(2), lamp: list(3), exposure: { words: "a number", is: isNumber },
-    inputs: tableOf("texts", TEXT.is), uniforms: tableOf("lists of numbers", (value) => numbers(value)),
+    inputs: tableOf("texts", TEXT.is), textures: tableOf("texts", TEXT.is), uniforms: tableOf("lists of numbers", (value) => numbers(value)),
 };
 
 const PROJECT: Record<keyof Project, Kind> = {

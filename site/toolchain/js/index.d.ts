@@ -35,6 +35,8 @@ export interface Toolchain {
     sketchMarks: typeof raw.sketchMarks;
     pictureMarks: typeof raw.pictureMarks;
     marksStep: typeof raw.marksStep;
+    keepImage: typeof raw.keepImage;
+    editor: typeof raw.editor;
 }
 
 /** An input stopped the toolchain. The next call finds it restarted. */

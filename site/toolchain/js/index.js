@@ -5,7 +5,7 @@ const NAMES = [
     "compose", "compile", "lint", "evaluate", "curves", "reference", "studio", "pictureStart",
     "pictureFrames", "pictureControls", "sketchStart",
     "sketchControls", "costs", "sketchPixel", "picturePixel", "markKinds", "sketchMarks",
-    "pictureMarks", "marksStep",
+    "pictureMarks", "marksStep", "keepImage", "editor",
 ];
 
 export class Stopped extends Error {

@@ -8,6 +8,7 @@ mod choose;
 mod cost;
 mod debug;
 mod diagnostic;
+mod editor;
 mod library;
 mod linkers;
 mod number;

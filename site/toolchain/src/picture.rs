@@ -9,6 +9,7 @@
 //! A pass that draws the same as in an earlier picture, such as a shadow map while materials change,
 //! is not drawn again.
 
+mod author;
 mod controls;
 mod drawing;
 pub mod exchange;
@@ -69,6 +70,8 @@ struct RequestedDrawing {
 struct Ready {
     prepared: Box<PreparedPass>,
     shot: Shot,
+    /// Whether the rows of the picture come in the other order.
+    is_upside_down: bool,
     /// How many drawings come before it.
     before: usize,
 }
@@ -190,7 +193,7 @@ pub fn with_last_picture<T>(
     CURRENT.with_borrow(|current| {
         let current = current.as_ref()?;
         let is_it = matches!(&current.work, Work::Picture(last) if **last == *request);
-        let Ready { prepared, shot, before: _ } = current.ready.as_ref().filter(|_| is_it)?;
+        let Ready { prepared, shot, .. } = current.ready.as_ref().filter(|_| is_it)?;
         Some(run(prepared, shot))
     })
 }
@@ -233,9 +236,11 @@ fn advance(kept: &Kept, current: &mut Current) -> Result<Step, Diagnostics> {
         if let Some(wanted) = wanted {
             return Ok(request_drawing(current, wanted));
         }
-        current.ready = Some(Ready { prepared: Box::new(prepared?), shot, before: count });
+        let prepared = Box::new(prepared?);
+        current.ready = Some(Ready { prepared, shot, is_upside_down: false, before: count });
     }
-    let Ready { prepared, shot, before } = current.ready.as_ref().ok_or_else(Vec::new)?;
+    let Ready { prepared, shot, is_upside_down, before } =
+        current.ready.as_ref().ok_or_else(Vec::new)?;
     let state = Mutex::new(PageState { count: *before, wanted: None });
     let page = Page { given: &current.given, state, target };
     let photographed = prepared.photograph(&page, shot);
@@ -243,6 +248,7 @@ fn advance(kept: &Kept, current: &mut Current) -> Result<Step, Diagnostics> {
         return Ok(request_drawing(current, wanted));
     }
     let picture = photographed?.develop();
+    let picture = if *is_upside_down { picture.upside_down() } else { picture };
     let mut rgba = Vec::with_capacity(picture.pixels.len() / 3 * 4);
     for [r, g, b] in picture.pixels.as_chunks::<3>().0 {
         rgba.extend([*r, *g, *b, 255]);
@@ -294,6 +300,7 @@ fn plan(kept: &Kept, request: &PictureRequest) -> Result<Plan, Diagnostics> {
         plan.numbers.entry(group.clone()).or_default().extend(fields);
     }
     plan.changes.uniforms.clone_from(&request.uniforms);
+    plan.changes.turn = request.turn;
     for (index, place) in &request.lamps {
         if let (Ok(index), Ok(place)) = (index.parse(), <[f64; 3]>::try_from(&place[..])) {
             plan.changes.lamps.insert(index, place.into());

@@ -19,10 +19,11 @@ use super::table::{Origin, Row, RowKind, numbers_text};
 use super::textures::{
     default_content, default_texture, named_texture, plain_sampler, texture_levels,
 };
-use super::values::{Chosen, Leaf, assign_values};
+use super::values::{Chosen, GivenValue, Leaf, UniformValue, assign_values};
 use super::{GivenTexture, OwnRequest, TextureContent, at_given, refused};
+use crate::controls::Uniform;
 use crate::frame::{buffer_leaves, pack_buffer};
-use crate::sketch::UNIFORM_BYTES;
+use crate::sketch::{LISTED, UNIFORM_BYTES};
 use crate::{Shot, Surroundings};
 
 /// The most bytes of a storage buffer of zeros.
@@ -221,6 +222,25 @@ impl<'s> BoundStages<'s> {
         }
     }
 
+    /// The numbers of uniforms, as many as a page has room for. Matrices are left out.
+    pub fn uniforms(&self, around: &Around<'_>) -> Vec<Uniform> {
+        let (mut uniforms, mut known) = (Vec::new(), BTreeSet::new());
+        for bound in self.bound.iter().filter(|one| one.binding.kind == BindingKind::Uniform) {
+            for (_, leaf) in leaves_of(bound) {
+                let is_left_out = NumberType::of(&leaf.ty).is_matrix()
+                    || is_padding(bound, &leaf.path)
+                    || uniforms.len() == LISTED;
+                if is_left_out || !known.insert(leaf.path.clone()) {
+                    continue;
+                }
+                let (numbers, _, _) = self.leaf_value(bound, &leaf, around);
+                let (program, path, ty) = (String::new(), leaf.path, leaf.ty);
+                uniforms.push(Uniform { program, path, ty, numbers });
+            }
+        }
+        uniforms
+    }
+
     /// The rows of uniforms and textures, and what else a person has to know.
     pub fn rows(&self, around: &Around<'_>) -> (Vec<Row>, Vec<String>) {
         let (mut rows, mut known) = (Vec::new(), BTreeSet::new());
@@ -251,6 +271,35 @@ impl<'s> BoundStages<'s> {
         }
         rows.extend(self.texture_rows.iter().cloned());
         (rows, notes)
+    }
+}
+
+impl OwnStages {
+    /// The values among these that a uniform has room for. What somebody chose before a text changed may
+    /// not fit it any more.
+    pub fn fitting_values(&self, chosen: &BTreeMap<String, Vec<f64>>) -> Vec<GivenValue> {
+        let leaves: Vec<Leaf> =
+            all_bindings(self).iter().flat_map(leaves_of).map(|(_, leaf)| leaf).collect();
+        let fits = |(path, numbers): &(&String, &Vec<f64>)| {
+            let mut all = leaves.iter();
+            all.any(|leaf| leaf.path == **path && NumberType::of(&leaf.ty).count() == numbers.len())
+        };
+        let given = |(path, numbers): (&String, &Vec<f64>)| GivenValue {
+            name: path.clone(),
+            value: UniformValue::Numbers(numbers.clone()),
+            origin: Origin::Option,
+            span: None,
+        };
+        chosen.iter().filter(fits).map(given).collect()
+    }
+
+    /// The names of textures that can be given, and their types in WGSL.
+    pub fn open_textures(&self) -> Vec<(String, String)> {
+        let is_open = |binding: &&Binding| {
+            matches!(binding.ty.as_str(), "texture_2d<f32>" | "texture_cube<f32>")
+        };
+        let all = all_bindings(self).into_iter().map(|bound| bound.binding);
+        all.filter(is_open).map(|one| (one.name.clone(), one.ty.clone())).collect()
     }
 }
 

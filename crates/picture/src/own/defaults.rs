@@ -154,6 +154,28 @@ pub fn uniform_meaning(block: &str, name: &str, ty: NumberType) -> Option<Meanin
     ruled.or_else(alone)
 }
 
+/// What a control for a uniform has to know of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UniformRole {
+    /// Seconds.
+    Time,
+    /// Three or four numbers that a person sees as a colour.
+    Color,
+}
+
+/// The role of a uniform by its path and its type in WGSL, where its name says one.
+pub fn uniform_role(path: &str, ty: &str) -> Option<UniformRole> {
+    let ty = NumberType::of(ty);
+    let (block, name) = path.rsplit_once('.').unwrap_or(("", path));
+    let is_color =
+        !ty.is_integer && !ty.is_matrix() && ty.rows >= 3 && has_word(&name_words(name), COLOR);
+    match uniform_meaning(block, name, ty) {
+        Some(Meaning::Time) => Some(UniformRole::Time),
+        Some(Meaning::Color(_)) if ty.rows >= 3 && !ty.is_matrix() => Some(UniformRole::Color),
+        _ => is_color.then_some(UniformRole::Color),
+    }
+}
+
 /// The numbers of a uniform by its path, such as `lights[1].color`, and what they are. `is_negated`
 /// says whether the shader writes a minus before a name. `None` if nothing suggests any.
 pub fn default_numbers(
@@ -222,8 +244,24 @@ fn meaning_numbers(
 
 #[cfg(test)]
 mod tests {
-    use super::{Meaning, uniform_meaning};
+    use super::{Meaning, UniformRole, uniform_meaning, uniform_role};
     use crate::own::shape::NumberType;
+
+    #[test]
+    fn roles_of_uniforms() {
+        for (path, ty, expected) in [
+            ("iTime", "f32", Some(UniformRole::Time)),
+            ("frame.time", "f32", Some(UniformRole::Time)),
+            ("tint", "vec4<f32>", Some(UniformRole::Color)),
+            ("light.ambient_colour", "vec3<f32>", Some(UniformRole::Color)),
+            ("material.diffuse", "vec3<f32>", Some(UniformRole::Color)),
+            ("color_count", "u32", None),
+            ("light.position", "vec3<f32>", None),
+            ("color_from_world", "mat4x4<f32>", None),
+        ] {
+            assert_eq!(uniform_role(path, ty), expected, "{path}");
+        }
+    }
 
     /// Names of LearnOpenGL, three.js, Shadertoy, WebGPU's samples and of this library's guide.
     #[test]

@@ -1,9 +1,12 @@
 //! What inputs are taken from: their names say it, or else their types and places.
 
+use std::collections::BTreeMap;
+
 use lamplight_bundle::Varying;
 
 use super::shape::NumberType;
 use super::words::{has_word, name_words};
+use crate::sketch::input_label;
 
 /// What a vertex has, or what can be computed of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,7 +36,7 @@ pub enum Source {
 
 impl Source {
     /// In words, for the table.
-    pub fn text(self) -> &'static str {
+    pub const fn text(self) -> &'static str {
         match self {
             Self::Position => "position",
             Self::Normal => "normal",
@@ -82,9 +85,29 @@ const RULES: &[(&[&[&str]], Source)] = &[
     (&[&["b"]], Source::Bitangent),
 ];
 
+/// Everything that an input can be taken from, by the words that name it.
+pub const SOURCES: &[Source] = &[
+    Source::Position,
+    Source::Normal,
+    Source::Tangent,
+    Source::Bitangent,
+    Source::Uv,
+    Source::Color,
+    Source::ToLight,
+    Source::ToEye,
+    Source::HalfWay,
+    Source::SeenPosition,
+    Source::SeenNormal,
+    Source::LightPosition,
+    Source::Depth,
+    Source::Zero,
+];
+
 /// How a source was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hint {
+    /// Somebody chose it.
+    Chosen,
     Name,
     Type,
     Nothing,
@@ -106,6 +129,13 @@ pub fn input_source(input: &Varying) -> (Source, Hint) {
         (3 | 4, Some(0)) => (Source::Position, Hint::Type),
         _ => (Source::Zero, Hint::Nothing),
     }
+}
+
+/// The source that somebody chose for an input, or else the one that its name suggests.
+pub fn chosen_source(input: &Varying, chosen: &BTreeMap<String, String>) -> (Source, Hint) {
+    let name = chosen.get(&input_label(input));
+    let found = SOURCES.iter().find(|source| Some(source.text()) == name.map(String::as_str));
+    found.map_or_else(|| input_source(input), |source| (*source, Hint::Chosen))
 }
 
 /// The source of an attribute: what a vertex has by itself.

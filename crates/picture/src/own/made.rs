@@ -1,9 +1,11 @@
 //! The vertex stage that is made for a fragment stage alone.
 
+use std::collections::BTreeMap;
+
 use lamplight_bundle::{Reflection, Varying};
 use lamplight_diagnostic::Diagnostics;
 
-use super::inputs::{Source, input_source};
+use super::inputs::{Source, chosen_source, input_source};
 use super::shape::NumberType;
 use crate::frame::ReadyStage;
 use crate::sketch::{given_inputs, vertex_stage};
@@ -37,8 +39,12 @@ pub fn is_flat(fragment: &Reflection) -> bool {
 ///
 /// # Errors
 /// Those of naga, for an input whose type no vertex stage can give.
-pub fn made_vertex(fragment: &Reflection, flat: bool) -> Result<ReadyStage, Diagnostics> {
-    vertex_stage(if flat { flat_text(fragment) } else { model_text(fragment) })
+pub fn made_vertex(
+    fragment: &Reflection,
+    flat: bool,
+    inputs: &BTreeMap<String, String>,
+) -> Result<ReadyStage, Diagnostics> {
+    vertex_stage(if flat { flat_text(fragment) } else { model_text(fragment, inputs) })
 }
 
 /// The stage of a triangle that covers the picture. `uv` counts from its upper left. Words in capitals
@@ -111,13 +117,13 @@ LINES    return given;
 ";
 
 fn flat_text(fragment: &Reflection) -> String {
-    let (outputs, lines) = given_inputs(fragment, &given_value);
+    let (outputs, lines) = given_inputs(fragment, &|input| given_value(input, &BTreeMap::new()));
     FLAT.replace("OUTPUTS", &outputs).replace("LINES", &lines)
 }
 
-fn model_text(fragment: &Reflection) -> String {
+fn model_text(fragment: &Reflection, inputs: &BTreeMap<String, String>) -> String {
     let (group, [camera, object, around]) = free_places(fragment);
-    let (outputs, lines) = given_inputs(fragment, &given_value);
+    let (outputs, lines) = given_inputs(fragment, &|input| given_value(input, inputs));
     MODEL
         .replace("GROUP", &group.to_string())
         .replace("CAMERA", &camera.to_string())
@@ -127,9 +133,9 @@ fn model_text(fragment: &Reflection) -> String {
         .replace("LINES", &lines)
 }
 
-fn given_value(input: &Varying) -> String {
+fn given_value(input: &Varying, inputs: &BTreeMap<String, String>) -> String {
     let ty = &input.ty;
-    let value = match input_source(input).0 {
+    let value = match chosen_source(input, inputs).0 {
         Source::Position => "position",
         Source::Normal => "normal",
         Source::Tangent => "tangent",

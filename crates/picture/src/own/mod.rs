@@ -29,9 +29,11 @@ mod values;
 mod words;
 
 pub use attributes::MOST as MOST_VERTICES;
+pub use defaults::{UniformRole, uniform_role};
 pub use file::{OwnSettings, read_settings};
 pub use images::decode_image;
-pub use models::{model_names, named_scene};
+pub use inputs::SOURCES;
+pub use models::{model_names, named_scene, turned_scene};
 pub use stages::{OwnStage, OwnStages, OwnText, choose_stages};
 pub use textures::{NAMED as NAMED_TEXTURES, holds_numbers, named_sky, named_texture};
 pub use values::{GivenValue, UniformValue, parse_value};
@@ -52,9 +54,10 @@ use lamplight_scenes::sets::{Object, Scene, TextureMap};
 use self::around::{Around, around_of};
 use self::attributes::{attribute_mesh, clip_square, indexed_mesh, vertex_count};
 use self::bindings::BoundStages;
-use self::inputs::{Hint, Source, attribute_source, input_source};
+use self::inputs::{Hint, Source, attribute_source, chosen_source};
 use self::shape::{NumberType, short_type};
 use self::table::{Origin, Row, RowKind};
+use crate::controls::Uniform;
 use crate::frame::{ReadyStage, Stages};
 use crate::heat::HeatMap;
 use crate::mesh::object_mesh;
@@ -78,6 +81,9 @@ pub struct OwnRequest {
     pub linear: bool,
     /// How many vertices a stage makes that only reads their index.
     pub vertices: Option<u32>,
+    /// The names of [`SOURCES`] that inputs of a lone fragment stage are taken from, by the names of
+    /// the inputs. The others have the one that their name suggests.
+    pub inputs: BTreeMap<String, String>,
 }
 
 /// A texture that somebody gave.
@@ -108,6 +114,8 @@ pub struct OwnPicture {
     pub notes: Vec<String>,
     /// Whether it is drawn over the whole picture, and not on a model.
     pub is_flat: bool,
+    /// The uniforms with their numbers, as many as a page has room for. Matrices are left out.
+    pub uniforms: Vec<Uniform>,
     is_upside_down: bool,
 }
 
@@ -153,7 +161,7 @@ pub fn prepare_own(
     let mut around = around_of(scene.eye, &scene.lamps, clip, request.time, shot);
     (around.seen_normals, around.seen_model) = bound.seen_matrices();
     let (vertex, camera) = match &stages.vertex {
-        None => made_stage(&stages.fragment.ready, &ground)?,
+        None => made_stage(&stages.fragment.ready, &ground, &request.inputs)?,
         Some(vertex) => placed_stage(stages, &vertex.ready)?,
     };
     let objects = ground_objects(&ground, scene);
@@ -168,8 +176,8 @@ pub fn prepare_own(
     let items: Vec<(Mesh, Buffers)> =
         objects.iter().map(item).collect::<Result<_, Diagnostics>>()?;
     let first = objects.first().map_or_else(|| around.clone(), |object| around.of_object(object));
-    let (rows, notes) = bound.rows(&first);
-    let rows = input_rows(stages).into_iter().chain(rows).collect();
+    let ((rows, notes), uniforms) = (bound.rows(&first), bound.uniforms(&first));
+    let rows = input_rows(stages, &request.inputs).into_iter().chain(rows).collect();
     let (is_flat, is_upside_down) = (!matches!(ground, Ground::Model), stages.is_for_opengl());
     let (eye, background) = viewer(stages, scene, shot);
     let pass = PreparedPass {
@@ -188,7 +196,7 @@ pub fn prepare_own(
         farther: Vec::new(),
         blended: None,
     };
-    Ok(OwnPicture { pass, rows, notes, is_flat, is_upside_down })
+    Ok(OwnPicture { pass, rows, notes, is_flat, uniforms, is_upside_down })
 }
 
 fn state_of(is_flat: bool, is_upside_down: bool) -> PipelineState {
@@ -212,6 +220,11 @@ fn viewer(stages: &OwnStages, scene: &Scene, shot: &Shot) -> (PassCamera, Backgr
 }
 
 impl OwnPicture {
+    /// The pass that draws it, and whether the rows of its picture come in the other order.
+    pub fn into_pass(self) -> (PreparedPass, bool) {
+        (self.pass, self.is_upside_down)
+    }
+
     /// Draws it.
     ///
     /// # Errors
@@ -284,9 +297,13 @@ fn ground_mesh(ground: &Ground, stages: &OwnStages, object: &Object, vertex: &Re
 type StageWithCamera = (ReadyStage, Option<Binding>);
 
 /// The vertex stage that is made for a fragment stage.
-fn made_stage(fragment: &ReadyStage, ground: &Ground) -> Result<StageWithCamera, Diagnostics> {
+fn made_stage(
+    fragment: &ReadyStage,
+    ground: &Ground,
+    inputs: &BTreeMap<String, String>,
+) -> Result<StageWithCamera, Diagnostics> {
     let is_flat = matches!(ground, Ground::Triangle);
-    let vertex = made::made_vertex(&fragment.reflection, is_flat)?;
+    let vertex = made::made_vertex(&fragment.reflection, is_flat, inputs)?;
     let camera = vertex.reflection.bindings.iter().find(|one| one.name == "camera").cloned();
     Ok((vertex, camera))
 }
@@ -336,7 +353,7 @@ fn made_buffers(
 }
 
 /// A row for each input of the first stage.
-fn input_rows(stages: &OwnStages) -> Vec<Row> {
+fn input_rows(stages: &OwnStages, inputs: &BTreeMap<String, String>) -> Vec<Row> {
     let (kind, reflection) = match &stages.vertex {
         Some(vertex) => (RowKind::Attribute, &vertex.ready.reflection),
         None => (RowKind::Input, &stages.fragment.ready.reflection),
@@ -345,9 +362,10 @@ fn input_rows(stages: &OwnStages) -> Vec<Row> {
     let row = |input: &Varying| {
         let (source, hint) = match kind {
             RowKind::Attribute => attribute_source(input),
-            _ => input_source(input),
+            _ => chosen_source(input, inputs),
         };
         let from = match hint {
+            Hint::Chosen => Origin::Option,
             Hint::Name => Origin::Name,
             Hint::Type => Origin::Type,
             Hint::Nothing => Origin::Zero,

@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use glam::DVec3;
 use lamplight_scenes::Shape;
 use lamplight_scenes::sets::{self, Eye, Scene};
 
@@ -23,6 +24,18 @@ pub fn model_names() -> impl Iterator<Item = &'static str> + Clone {
 pub fn default_scene() -> Scene {
     let (_, sphere) = MODELS[0];
     scene_of(sphere())
+}
+
+/// The model or scene of that name, as a viewer sees it who has walked around it and up, by angles in
+/// radians, with the light at a place.
+pub fn turned_scene(name: &str, turn: [f64; 2], lamp: DVec3) -> Option<Scene> {
+    let mut scene = named_scene(name)?;
+    let is_model = MODELS.iter().any(|(known, _)| *known == name);
+    scene.eye = if is_model { turned_eye(turn) } else { scene.eye.turned(turn) };
+    if let Some(light) = scene.lamps.first_mut().filter(|_| is_model) {
+        light.position = lamp;
+    }
+    Some(scene)
 }
 
 fn scene_of(shape: Shape) -> Scene {

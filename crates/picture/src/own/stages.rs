@@ -61,6 +61,18 @@ impl OwnStage {
 }
 
 impl OwnStages {
+    /// The same stages, whose loops make at most so many trips: a page shares its device with all others
+    /// of the browser.
+    #[must_use]
+    pub fn with_trips(mut self, trips: u32) -> Self {
+        for stage in self.vertex.iter_mut().chain([&mut self.fragment]) {
+            let mut validated = Validated::clone(&stage.ready.written);
+            bound_loops(&mut validated.module, trips);
+            stage.ready.validated = Arc::new(validated);
+        }
+        self
+    }
+
     /// Whether they are GLSL for OpenGL or WebGL.
     pub fn is_for_opengl(&self) -> bool {
         self.fragment.is_glsl && self.fragment.clip == Clip::OpenGl

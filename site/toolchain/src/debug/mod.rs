@@ -20,7 +20,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 
 use crate::diagnostic::diagnostics;
 use crate::picture::exchange::PictureRequest;
-use crate::picture::sketch::{SketchRequest, prepared_sketch};
+use crate::picture::sketch::{PreparedSketch, SketchRequest, prepared_sketch};
 use crate::picture::{with_last_picture, with_texts};
 use crate::{Answer, answer};
 use run::{PixelRun, recorded};
@@ -50,8 +50,7 @@ pub struct PixelChoice {
 struct Kept {
     request: SketchRequest,
     sources: SourceSet,
-    prepared: Box<PreparedPass>,
-    shot: Shot,
+    prepared: Box<PreparedSketch>,
 }
 
 thread_local! {
@@ -63,8 +62,12 @@ thread_local! {
 pub fn sketch_pixel(request: Ts<SketchRequest>, pixel: Ts<PixelChoice>) -> Answer<PixelRun> {
     let (request, pixel) = (request.to_rust()?, pixel.to_rust()?);
     answer(
-        &with_sketch(request, |prepared, shot, sources| pixel_run(prepared, shot, sources, pixel))
-            .unwrap_or_else(|(sources, problems)| PixelRun::failed(&sources, &problems)),
+        &with_sketch(request, |sketch, sources| {
+            let PreparedSketch { prepared, shot, is_upside_down } = sketch;
+            let y = turned_row(pixel.y, shot, *is_upside_down);
+            pixel_run(prepared, shot, sources, PixelChoice { y, ..pixel })
+        })
+        .unwrap_or_else(|(sources, problems)| PixelRun::failed(&sources, &problems)),
     )
 }
 
@@ -82,28 +85,33 @@ pub fn picture_pixel(request: Ts<PictureRequest>, pixel: Ts<PixelChoice>) -> Ans
     })
 }
 
+/// The row of a drawing that a row of its picture shows.
+fn turned_row(row: u32, shot: &Shot, is_upside_down: bool) -> u32 {
+    if is_upside_down { shot.size[1].saturating_sub(1 + row) } else { row }
+}
+
 /// What a request for a sketch is answered with if it has mistakes.
 type Failed = (SourceSet, Diagnostics);
 
 /// Calls a function with a prepared sketch: the one of the last call, if it is asked for again.
 fn with_sketch<T>(
     request: SketchRequest,
-    then: impl FnOnce(&PreparedPass, &Shot, &SourceSet) -> T,
+    then: impl FnOnce(&PreparedSketch, &SourceSet) -> T,
 ) -> Result<T, Failed> {
     KEPT.with_borrow_mut(|kept| {
         if kept.as_ref().is_none_or(|kept| kept.request != request) {
             *kept = None;
             let mut sources = SourceSet::default();
             match prepared_sketch(&request, &mut sources) {
-                Ok((prepared, shot)) => {
-                    *kept = Some(Kept { request, sources, prepared: Box::new(prepared), shot });
+                Ok(prepared) => {
+                    *kept = Some(Kept { request, sources, prepared: Box::new(prepared) });
                 }
                 Err(problems) => return Err((sources, problems)),
             }
         }
-        let Kept { request: _, sources, prepared, shot } =
+        let Kept { request: _, sources, prepared } =
             kept.as_ref().ok_or_else(|| (SourceSet::default(), Vec::new()))?;
-        Ok(then(prepared, shot, sources))
+        Ok(then(prepared, sources))
     })
 }
 

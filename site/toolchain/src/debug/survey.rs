@@ -76,6 +76,8 @@ struct Looked {
     left: Vec<(usize, usize)>,
     /// The pixels that have an answer.
     is_known: Vec<bool>,
+    /// Whether the rows of the picture come in the other order.
+    is_upside_down: bool,
 }
 
 /// The fragments of one stage.
@@ -106,7 +108,10 @@ pub fn mark_kinds() -> Answer<MarkKinds> {
 #[wasm_bindgen(js_name = sketchMarks)]
 pub fn sketch_marks(request: Ts<SketchRequest>) -> Answer<MarksBegun> {
     let request = request.to_rust()?;
-    answer(&with_sketch(request, begun).unwrap_or_else(|(sources, problems)| MarksBegun {
+    let found = with_sketch(request, |sketch, sources| {
+        begun(&sketch.prepared, &sketch.shot, sketch.is_upside_down, sources)
+    });
+    answer(&found.unwrap_or_else(|(sources, problems)| MarksBegun {
         diagnostics: diagnostics(&sources, &problems),
         ..MarksBegun::default()
     }))
@@ -117,7 +122,7 @@ pub fn sketch_marks(request: Ts<SketchRequest>) -> Answer<MarksBegun> {
 pub fn picture_marks(request: Ts<PictureRequest>) -> Answer<MarksBegun> {
     let request = request.to_rust()?;
     let found = with_last_picture(&request, |prepared, shot| {
-        with_texts(|sources| begun(prepared, shot, sources))
+        with_texts(|sources| begun(prepared, shot, false, sources))
     });
     answer(&match found {
         Some(Ok(begun)) => begun,
@@ -134,9 +139,15 @@ pub fn marks_step(quads: u32) -> Answer<MarksStep> {
     }))
 }
 
-fn begun(prepared: &PreparedPass, shot: &Shot, sources: &SourceSet) -> MarksBegun {
+fn begun(
+    prepared: &PreparedPass,
+    shot: &Shot,
+    is_upside_down: bool,
+    sources: &SourceSet,
+) -> MarksBegun {
     match looked(prepared, shot, sources) {
         Ok(looked) => {
+            let looked = Looked { is_upside_down, ..looked };
             let [width, height] = shot.size;
             let quads = looked.left.len() as u32;
             LOOKED.set(Some(looked));
@@ -178,7 +189,8 @@ fn looked(
     }
     left.reverse();
     let [width, height] = shot.size;
-    Ok(Looked { width, slices, left, is_known: vec![false; width as usize * height as usize] })
+    let is_known = vec![false; width as usize * height as usize];
+    Ok(Looked { width, slices, left, is_known, is_upside_down: false })
 }
 
 /// When a quad is looked at: first few that are far from each other, then those between.
@@ -192,6 +204,13 @@ fn turn_of((x, y): (u32, u32)) -> (u32, u32, u32) {
 }
 
 impl Looked {
+    /// The pixel of the picture that shows one of the drawing.
+    fn shown_pixel(&self, pixel: u32) -> u32 {
+        let (width, count) = (self.width.max(1), self.is_known.len() as u32);
+        let (row, column) = (pixel / width, pixel % width);
+        if self.is_upside_down { (count / width - 1 - row) * width + column } else { pixel }
+    }
+
     fn step(&mut self, quads: usize) -> MarksStep {
         let mut step = MarksStep::default();
         for _ in 0..quads {
@@ -206,7 +225,7 @@ impl Looked {
                     Some(is_known) if !*is_known => *is_known = true,
                     _ => continue,
                 }
-                step.pixels.push(pixel);
+                step.pixels.push(self.shown_pixel(pixel));
                 step.marks.push(slice.marks(quad, lane));
             }
         }

@@ -1,6 +1,7 @@
 //! What can be changed in a picture.
 
 use lamplight_picture as picture;
+use lamplight_picture::own::{UniformRole, uniform_role};
 use lamplight_scenes::sets::LampKind;
 use serde::Serialize;
 use tsify::{Ts, Tsify};
@@ -46,6 +47,8 @@ pub struct UniformInfo {
     #[serde(rename = "type")]
     pub ty: String,
     pub numbers: Vec<f64>,
+    /// `time` in seconds, or `color`, where the name says so.
+    pub role: Option<String>,
 }
 
 /// What can be changed in a picture, with the numbers that it has. Matrices follow from the scene.
@@ -65,7 +68,12 @@ pub fn picture_controls(request: Ts<PictureRequest>) -> Answer<PictureControls> 
 
 /// A uniform for the page.
 pub fn uniform_info(uniform: picture::Uniform) -> UniformInfo {
+    let role = uniform_role(&uniform.path, &uniform.ty).map(|role| match role {
+        UniformRole::Time => "time".to_owned(),
+        UniformRole::Color => "color".to_owned(),
+    });
     UniformInfo {
+        role,
         program: uniform.program,
         path: uniform.path,
         ty: uniform.ty,

@@ -57,6 +57,10 @@ pub struct PictureRequest {
     #[serde(default)]
     #[tsify(optional, type = "Record<string, number[]>")]
     pub lamps: BTreeMap<String, Vec<f64>>,
+    /// How far the viewer has walked around what is looked at, and up, in radians.
+    #[serde(default)]
+    #[tsify(optional)]
+    pub turn: [f64; 2],
     /// What the page draws with: `wgsl` for WebGPU, `essl300` for WebGL2.
     pub target: String,
 }

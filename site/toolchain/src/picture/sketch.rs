@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use tsify::{Ts, Tsify};
 use wasm_bindgen::prelude::wasm_bindgen;
 
+use super::author;
 use super::controls::{UniformInfo, uniform_info};
 use super::exchange::Step;
 use super::{Ready, Work, begun, refused};
@@ -45,6 +46,21 @@ pub struct SketchRequest {
     #[serde(default)]
     #[tsify(optional, type = "Record<string, number[]>")]
     pub uniforms: BTreeMap<String, Vec<f64>>,
+    /// Whether the text is an author's, as `lamplight render FILE` takes it: it may have a vertex stage,
+    /// and names say what uniforms, inputs and textures hold. `model` may be a scene then, and without
+    /// one the text chooses.
+    #[serde(default)]
+    #[tsify(optional)]
+    pub own: bool,
+    /// Seconds.
+    #[serde(default)]
+    #[tsify(optional)]
+    pub time: f64,
+    /// What textures of an author's text hold, by their names: one of the choices, or `file:NAME` for an
+    /// image that `keepImage` took.
+    #[serde(default)]
+    #[tsify(optional, type = "Record<string, string>")]
+    pub textures: BTreeMap<String, String>,
     /// Pixels along an edge.
     pub size: u32,
     /// How many places of each pixel are averaged.
@@ -63,10 +79,28 @@ pub struct SketchRequest {
 pub struct SketchControls {
     pub inputs: Vec<InputInfo>,
     pub uniforms: Vec<UniformInfo>,
+    /// The textures of an author's text.
+    pub textures: Vec<TextureChoice>,
+    /// Whether it is drawn over the whole picture, and not on a model.
+    pub is_flat: bool,
+    /// Whether numbers of colours are linear light.
+    pub is_linear: bool,
     pub models: Vec<String>,
     /// What inputs can be given.
     pub sources: Vec<String>,
     pub diagnostics: Vec<Diagnostic>,
+}
+
+/// A texture, with what it holds and what it could hold.
+#[derive(Serialize, Tsify)]
+#[serde(rename_all = "camelCase")]
+pub struct TextureChoice {
+    pub name: String,
+    /// Type in WGSL.
+    #[serde(rename = "type")]
+    pub ty: String,
+    pub value: String,
+    pub choices: Vec<String>,
 }
 
 /// An input of the stage.
@@ -81,7 +115,7 @@ pub struct InputInfo {
 }
 
 /// Where the light is if nobody moved it.
-const LAMP: [f64; 3] = [1.6, 2.0, 2.4];
+pub const LAMP: [f64; 3] = [1.6, 2.0, 2.4];
 
 /// Begins a picture of a fragment stage, and forgets the picture before it. `pictureFrames`
 /// continues.
@@ -90,8 +124,9 @@ pub fn sketch_start(request: Ts<SketchRequest>) -> Answer<Step> {
     let request = request.to_rust()?;
     let mut sources = SourceSet::default();
     answer(&match prepared_sketch(&request, &mut sources) {
-        Ok((prepared, shot)) => {
-            let ready = Ready { prepared: Box::new(prepared), shot, before: 0 };
+        Ok(PreparedSketch { prepared, shot, is_upside_down }) => {
+            let prepared = Box::new(prepared);
+            let ready = Ready { prepared, shot, is_upside_down, before: 0 };
             begun(Work::Sketch(request.target), Some(ready))
         }
         Err(problems) => {
@@ -105,7 +140,15 @@ pub fn sketch_start(request: Ts<SketchRequest>) -> Answer<Step> {
 pub fn sketch_controls(request: Ts<SketchRequest>) -> Answer<SketchControls> {
     let request = request.to_rust()?;
     let mut sources = SourceSet::default();
+    if request.own {
+        let found = author::author_controls(&request, &mut sources);
+        return answer(&found.unwrap_or_else(|problems| SketchControls {
+            diagnostics: diagnostics(&sources, &problems),
+            ..SketchControls::default()
+        }));
+    }
     let mut controls = SketchControls {
+        is_linear: true,
         models: MODELS.iter().map(|(name, _)| (*name).to_owned()).collect(),
         sources: SOURCES.iter().map(|(name, _)| (*name).to_owned()).collect(),
         ..SketchControls::default()
@@ -126,13 +169,27 @@ pub fn sketch_controls(request: Ts<SketchRequest>) -> Answer<SketchControls> {
 }
 
 /// A sketch on its model, with its camera.
+pub struct PreparedSketch {
+    pub prepared: PreparedPass,
+    pub shot: Shot,
+    /// Whether the rows of the picture come in the other order.
+    pub is_upside_down: bool,
+}
+
+/// Makes a sketch ready to be drawn.
 pub fn prepared_sketch(
     request: &SketchRequest,
     sources: &mut SourceSet,
-) -> Result<(PreparedPass, Shot), Diagnostics> {
-    let (sketch, setting) = sketched(request, sources)?;
+) -> Result<PreparedSketch, Diagnostics> {
     let shot = shot(request)?;
-    Ok((sketch.prepare(&setting, &shot)?, shot))
+    if request.own {
+        let (prepared, is_upside_down) =
+            author::author_picture(request, &shot, sources)?.into_pass();
+        return Ok(PreparedSketch { prepared, shot, is_upside_down });
+    }
+    let (sketch, setting) = sketched(request, sources)?;
+    let prepared = sketch.prepare(&setting, &shot)?;
+    Ok(PreparedSketch { prepared, shot, is_upside_down: false })
 }
 
 fn sketched(
@@ -151,7 +208,7 @@ fn sketched(
     Ok((sketch, setting))
 }
 
-fn shot(request: &SketchRequest) -> Result<Shot, Diagnostics> {
+pub fn shot(request: &SketchRequest) -> Result<Shot, Diagnostics> {
     const LARGEST: u32 = 1024;
     let sky = environment("studio").ok_or_else(|| vec![refused("there is no environment")])?;
     Ok(Shot {

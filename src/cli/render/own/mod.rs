@@ -9,6 +9,7 @@ mod watch;
 
 pub use arguments::{Colors, OwnArguments};
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -217,7 +218,8 @@ impl Reader<'_> {
         let time = own.time.or(settings.time).unwrap_or(1.0);
         let given = content::given_values(self.arguments, settings);
         let vertices = own.vertices;
-        let request = OwnRequest { scene, given, textures, time, linear, vertices };
+        let inputs = BTreeMap::new();
+        let request = OwnRequest { scene, given, textures, time, linear, vertices, inputs };
         let prepared = prepare_own(&stages, &request, self.shot).map_err(failed)?;
         let shot = match prepared.is_flat && self.arguments.samples.is_none() {
             // There are no edges that several samples would smooth.
