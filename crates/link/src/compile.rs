@@ -6,16 +6,17 @@ use std::sync::Arc;
 use super::browsers::fit_for_browsers;
 use super::{Linker, Reason};
 use lamplight_bundle::{
-    Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Language, SourceClip,
-    SpirvForm, Target, Unit,
+    Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Language, Reflection,
+    SourceClip, SpirvForm, Target, Unit,
 };
 use lamplight_compose::{self as compose, Composed};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use lamplight_emit::{self as emit, targets};
 use lamplight_files::limits::GROUP_BYTES;
-use lamplight_glsl::wgsl::Clip;
+use lamplight_glsl::wgsl::{Clip, InterfaceName, Slot};
 use lamplight_validate::{
-    self as validate, Validated, on_large_stack, validate_for_some, validate_unguarded,
+    self as validate, TranslatedGlsl, Validated, on_large_stack, validate_for_some,
+    validate_unguarded,
 };
 
 /// One text in two forms: as its author reads it, for errors; and without comments and layout,
@@ -61,17 +62,18 @@ fn compile_glsl(
     linker: &Linker<'_>,
 ) -> Result<CompiledUnit, Diagnostics> {
     let clip = positions_of(text.composed, linker.conventions);
-    let mut lean = match validate::glsl_as_plain_wgsl(text.lean, clip) {
-        Ok(lean) => lean,
-        // Only the author's text has places for errors.
-        Err(_) => validate::glsl_as_plain_wgsl(text.composed, clip)?,
-    };
+    let TranslatedGlsl { wgsl: mut lean, interface } =
+        match validate::glsl_as_plain_wgsl(text.lean, clip) {
+            Ok(lean) => lean,
+            // Only the author's text has places for errors.
+            Err(_) => validate::glsl_as_plain_wgsl(text.composed, clip)?,
+        };
     let has_warnings = !std::mem::take(&mut lean.warnings).is_empty();
     let lean = compose::lean(&lean);
     if !has_warnings && let Some(made) = link_whole(&lean, entry, targets, linker)? {
-        return Ok(made);
+        return Ok(with_names(made, &interface));
     }
-    let mut composed = validate::glsl_as_plain_wgsl(text.composed, clip)?;
+    let mut composed = validate::glsl_as_plain_wgsl(text.composed, clip)?.wgsl;
     let mut warnings = std::mem::take(&mut composed.warnings);
     let derivatives = validate::lint_derivatives(&composed);
     let allowed = match derivatives.is_empty() {
@@ -92,8 +94,28 @@ fn compile_glsl(
         )),
         false => warning,
     }));
-    warnings.extend(made.warnings);
-    Ok(CompiledUnit { warnings, ..made })
+    warnings.extend(made.warnings.iter().cloned());
+    Ok(with_names(CompiledUnit { warnings, ..made }, &interface))
+}
+
+/// The unit, whose reflection calls inputs and outputs as the author does.
+fn with_names(mut made: CompiledUnit, interface: &[InterfaceName]) -> CompiledUnit {
+    let Reflection { inputs, outputs, .. } = Arc::make_mut(&mut made.unit.reflection);
+    for (list, are_inputs) in [(inputs, true), (outputs, false)] {
+        for varying in list {
+            let is_it = |name: &&InterfaceName| {
+                name.is_input == are_inputs
+                    && match &name.slot {
+                        Slot::Location(location) => varying.location == Some(*location),
+                        Slot::Builtin(builtin) => varying.builtin.as_ref() == Some(builtin),
+                    }
+            };
+            if let Some(found) = interface.iter().find(is_it) {
+                varying.name = Some(found.name.clone());
+            }
+        }
+    }
+    made
 }
 
 /// A text that is linked in all targets and breaks no rule of browsers.

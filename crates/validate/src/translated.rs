@@ -8,7 +8,7 @@ use lamplight_diagnostic::source::{SourceId, Span};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Label, Severity, codes};
 use lamplight_glsl::is_for_vulkan;
 use lamplight_glsl::tree::Stage as GlslStage;
-use lamplight_glsl::wgsl::{Clip, Fact, Options, Written};
+use lamplight_glsl::wgsl::{Clip, Fact, InterfaceName, Options, Written};
 
 use super::advice::{self, Mistake};
 use super::browsers::lint_derivatives;
@@ -63,7 +63,16 @@ fn glsl_stage(stage: Stage) -> GlslStage {
 /// # Errors
 /// As [`translate_glsl`]; also for a text that is not GLSL, or whose stage is not known.
 pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnostics> {
-    as_wgsl(composed, Options { clip, keeps_rule: false })
+    as_wgsl(composed, Options { clip, keeps_rule: false }).map(|translated| translated.wgsl)
+}
+
+/// A text in GLSL as WGSL.
+#[derive(Debug)]
+pub struct TranslatedGlsl {
+    /// The text. Its warnings are what WGSL has no word for.
+    pub wgsl: Composed,
+    /// What the author calls the inputs and outputs, which are parameters and members there.
+    pub interface: Vec<InterfaceName>,
 }
 
 /// As [`glsl_as_wgsl`], without the filter that turns the rule for derivatives off. So the rule can be
@@ -71,11 +80,11 @@ pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnos
 ///
 /// # Errors
 /// As [`glsl_as_wgsl`].
-pub fn glsl_as_plain_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnostics> {
+pub fn glsl_as_plain_wgsl(composed: &Composed, clip: Clip) -> Result<TranslatedGlsl, Diagnostics> {
     as_wgsl(composed, Options { clip, keeps_rule: true })
 }
 
-fn as_wgsl(composed: &Composed, options: Options) -> Result<Composed, Diagnostics> {
+fn as_wgsl(composed: &Composed, options: Options) -> Result<TranslatedGlsl, Diagnostics> {
     let (Language::Glsl, Some(stage)) = (composed.language, composed.stage) else {
         let message = "the stage of the GLSL text is not known";
         return Err(vec![Diagnostic::error(codes::GLSL_ERROR, message)]);
@@ -106,7 +115,7 @@ fn as_wgsl(composed: &Composed, options: Options) -> Result<Composed, Diagnostic
             None => warning,
         }
     });
-    Ok(Composed {
+    let wgsl = Composed {
         language: Language::Wesl,
         stage: None,
         parts: parts_of_wgsl(&text),
@@ -116,7 +125,8 @@ fn as_wgsl(composed: &Composed, options: Options) -> Result<Composed, Diagnostic
         warnings: warnings.collect(),
         decisions: composed.decisions.clone(),
         library: composed.library,
-    })
+    };
+    Ok(TranslatedGlsl { wgsl, interface: facts.interface })
 }
 
 /// Validates a text in GLSL by its translation, and looks for what a lint reports.
@@ -124,7 +134,7 @@ fn as_wgsl(composed: &Composed, options: Options) -> Result<Composed, Diagnostic
 /// # Errors
 /// As [`glsl_as_wgsl`].
 pub fn lint_as_wgsl(composed: &Composed) -> Result<Diagnostics, Diagnostics> {
-    let mut wgsl = glsl_as_plain_wgsl(composed, Clip::Kept)?;
+    let mut wgsl = glsl_as_plain_wgsl(composed, Clip::Kept)?.wgsl;
     let validated = validate_for_some(&wgsl).map_err(of_translations)?;
     let mut found = std::mem::take(&mut wgsl.warnings);
     found.extend(lint_derivatives(&wgsl));

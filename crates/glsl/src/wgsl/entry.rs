@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::output::Fact;
+use super::output::{Fact, InterfaceName, Slot};
 use super::{Clip, Writer};
 use crate::builtin::variables::{Builtin, Meaning};
 use crate::lexer::At;
@@ -168,8 +168,16 @@ impl<'s> Writer<'s> {
             }
         }
         for leaf in leaves {
+            let own = if simple { &var.name } else { &leaf.name };
+            self.name_slot(input, Slot::Location(leaf.location.unwrap_or(0)), own);
             self.plan_leaf(leaf, input, direct, var.at);
         }
+    }
+
+    /// Notes what the author calls an input or output.
+    fn name_slot(&mut self, is_input: bool, slot: Slot, name: &str) {
+        let name = name.to_owned();
+        self.facts.interface.push(InterfaceName { is_input, slot, name });
     }
 
     /// An input or output with its first location.
@@ -391,6 +399,7 @@ impl<'s> Writer<'s> {
     }
 
     fn plan_output(&mut self, index: u32, var: &Var, (builtin, ty): (&str, &str)) {
+        self.name_slot(false, Slot::Builtin(builtin.to_owned()), &var.name);
         let name = self.var_name(index);
         self.declare_builtin(index, var);
         let (ty, value) = match (builtin, &var.ty) {
@@ -415,11 +424,14 @@ impl<'s> Writer<'s> {
         let name = self.var_name(index);
         self.declare_builtin(index, var);
         let Type::Array(_, size) = var.ty else {
+            self.name_slot(false, Slot::Location(0), &var.name);
             let text = "@location(0) #: vec4f".to_owned();
             self.entry.outputs.push((text, "color".to_owned(), name));
             return;
         };
         for number in self.color_numbers(index, size.unwrap_or(0)) {
+            let own = format!("{}[{number}]", var.name);
+            self.name_slot(false, Slot::Location(number), &own);
             let text = format!("@location({number}) #: vec4f");
             let value = format!("{name}[{number}]");
             self.entry.outputs.push((text, format!("color_{number}"), value));
@@ -448,6 +460,7 @@ impl<'s> Writer<'s> {
     }
 
     fn plan_input(&mut self, index: u32, var: &Var, (builtin, ty): (&str, &str)) {
+        self.name_slot(true, Slot::Builtin(builtin.to_owned()), &var.name);
         let name = self.var_name(index);
         let wanted = self.type_text(&var.ty);
         let is_array = matches!(var.ty, Type::Array(..));

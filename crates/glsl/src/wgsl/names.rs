@@ -4,9 +4,8 @@ use super::Writer;
 use crate::tree::{Place, Struct};
 use crate::types::{Dim, Opaque, OpaqueKind, Scalar, Type};
 
-/// Keywords, reserved words, types and functions of WGSL: a name of the text that is one of them is
-/// renamed, since the translator writes them itself.
-const WORDS: &str = "
+/// Keywords and reserved words of WGSL, which no name can be.
+const RESERVED: &str = "
 alias break case const const_assert continue continuing default diagnostic discard else enable
 false fn for if let loop override requires return struct switch true var while
 NULL Self abstract active alignas alignof as asm asm_fragment async attribute auto await become
@@ -22,6 +21,11 @@ resource restrict self set shared sizeof smooth snorm static static_assert stati
 subroutine super target template this thread_local throw trait try type typedef typeid typename
 typeof union unless unorm unsafe unsized use using varying virtual volatile wgsl where with
 writeonly yield
+";
+
+/// Types and functions of WGSL: a name of the module or of a function that is one of them is renamed, since
+/// the translator writes them itself. Members may have such names.
+const PREDECLARED: &str = "
 bool f16 f32 i32 u32 f64 i64 u64 array atomic bitcast ptr sampler sampler_comparison binding_array
 vec2 vec3 vec4 vec2f vec3f vec4f vec2i vec3i vec4i vec2u vec3u vec4u vec2h vec3h vec4h
 mat2x2 mat2x3 mat2x4 mat3x2 mat3x3 mat3x4 mat4x2 mat4x3 mat4x4
@@ -48,19 +52,31 @@ unpack2x16snorm unpack2x16unorm unpack2x16float storageBarrier textureBarrier wo
 workgroupUniformLoad outerProduct inverse isNan isInf isNormal isFinite modf_result
 ";
 
+type Words = rustc_hash::FxHashSet<&'static str>;
+
 thread_local! {
-    static SET: rustc_hash::FxHashSet<&'static str> = WORDS.split_whitespace().collect();
+    static RESERVED_SET: Words = RESERVED.split_whitespace().collect();
+    static PREDECLARED_SET: Words = PREDECLARED.split_whitespace().collect();
+}
+
+/// Whether no name can be so in WGSL.
+fn is_reserved(name: &str) -> bool {
+    RESERVED_SET.with(|set| set.contains(name)) || name.starts_with("__") || name == "_"
 }
 
 /// Whether WGSL has another use for a name.
 pub(super) fn is_word(name: &str) -> bool {
-    SET.with(|set| set.contains(name)) || name.starts_with("__") || name == "_"
+    is_reserved(name) || PREDECLARED_SET.with(|set| set.contains(name))
 }
 
 /// A name that WGSL takes, before clashes are looked for.
 pub(super) fn plain_name(name: &str) -> String {
+    if is_word(name) { changed_name(name) } else { name.to_owned() }
+}
+
+/// A name in the place of one that WGSL does not take.
+fn changed_name(name: &str) -> String {
     match name.trim_start_matches('_') {
-        _ if !is_word(name) => name.to_owned(),
         // WGSL has no name of underscores alone.
         "" => "_0".to_owned(),
         stem => format!("{stem}_").replace("__", "_"),
@@ -248,7 +264,8 @@ impl Writer<'_> {
 fn member_names(content: &Struct) -> Vec<String> {
     let mut taken: Vec<String> = content.members.iter().map(|field| field.name.clone()).collect();
     for at in 0..taken.len() {
-        let mut found = plain_name(&taken[at]);
+        let name = &taken[at];
+        let mut found = if is_reserved(name) { changed_name(name) } else { name.clone() };
         while taken.iter().enumerate().any(|(other, name)| other != at && *name == found) {
             found.push('_');
         }

@@ -152,9 +152,28 @@ pub enum Fact {
     Binding(String, u32, u32),
 }
 
+/// Where a value enters or leaves the stage.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Slot {
+    /// `@location`
+    Location(u32),
+    /// `@builtin`
+    Builtin(String),
+}
+
+/// What the author calls a value that enters or leaves the stage.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InterfaceName {
+    pub is_input: bool,
+    pub slot: Slot,
+    pub name: String,
+}
+
 /// The side table.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Facts {
+    /// Inputs and outputs.
+    pub interface: Vec<InterfaceName>,
     /// Uniforms, buffers, textures and images.
     pub resources: Vec<Resource>,
     /// What else there is, with the declarations.

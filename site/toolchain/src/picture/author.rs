@@ -115,7 +115,8 @@ pub fn author_picture(
     shot: &Shot,
     sources: &mut SourceSet,
 ) -> Result<OwnPicture, Diagnostics> {
-    drawn(&stages_of(request, sources)?, request, shot)
+    let stages = stages_of(request, sources)?;
+    drawn(&stages, request, shot)
 }
 
 /// Shaders for OpenGL write what the display shows.
