@@ -17,7 +17,7 @@ use lamplight_compose::resolve::{Packages, glsl::load};
 use lamplight_compose::{Composed, Keep, Options, glsl::compose};
 use lamplight_diagnostic::Diagnostic;
 use lamplight_diagnostic::render::{Form, render};
-use lamplight_diagnostic::source::{Memory, Package, SourceSet};
+use lamplight_diagnostic::source::{Memory, Package, SourceId, SourceSet};
 use lamplight_permute::{Setting, Settings};
 use libtest_mimic::{Failed, Trial};
 
@@ -158,24 +158,15 @@ fn check_map(sources: &SourceSet, composed: &Composed) -> Result<(), Failed> {
 }
 
 fn validate(composed: &Composed) -> Result<(), Failed> {
-    let composed_stage = composed.stage.unwrap();
-    let stage = match composed_stage {
-        Stage::Vertex => naga::ShaderStage::Vertex,
-        Stage::Fragment => naga::ShaderStage::Fragment,
-        Stage::Compute => naga::ShaderStage::Compute,
+    let stage = match composed.stage.unwrap() {
+        Stage::Vertex => lamplight_glsl::tree::Stage::Vertex,
+        Stage::Fragment => lamplight_glsl::tree::Stage::Fragment,
+        Stage::Compute => lamplight_glsl::tree::Stage::Compute,
     };
-    let module = naga::front::glsl::Frontend::default()
-        .parse(&naga::front::glsl::Options::from(stage), &composed.text)
-        .map_err(|errors| {
-            format!("naga: {}\n{}", errors.emit_to_string(&composed.text), composed.text)
-        })?;
-    naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        naga::valid::Capabilities::empty(),
-    )
-    .validate(&module)
-    .map_err(|error| format!("naga: {}", error.emit_to_string(&composed.text)))?;
-    Ok(())
+    let (text, id) = (&composed.text, SourceId(u32::MAX));
+    let checked =
+        lamplight_glsl::check::check(text, &lamplight_glsl::parse::parse(text), stage, id);
+    checked.map(drop).map_err(|errors| format!("{errors:?}\n{text}").into())
 }
 
 /// A name, the code of the expected error (empty for none), and the files.

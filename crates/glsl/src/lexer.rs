@@ -143,8 +143,11 @@ impl Lexer<'_> {
     /// To the end of the line, over continued lines.
     fn skip_line(&mut self) {
         while self.at < self.bytes.len() && self.bytes[self.at] != b'\n' {
-            let continued = self.bytes[self.at] == b'\\';
-            self.at += if continued && self.peek(1) == b'\n' { 2 } else { 1 };
+            self.at += match (self.bytes[self.at], self.peek(1), self.peek(2)) {
+                (b'\\', b'\r', b'\n') => 3,
+                (b'\\', b'\n', _) => 2,
+                _ => 1,
+            };
         }
         self.at = self.at.min(self.bytes.len());
     }
@@ -236,5 +239,21 @@ impl Lexer<'_> {
         let mut text = three;
         text[length..].fill(0);
         Kind::Mark(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Kind, tokenize};
+
+    #[test]
+    fn comments_go_on_behind_a_backslash() {
+        for end in ["\n", "\r\n"] {
+            let text = format!("// one \\{end} two{end}name");
+            let lexed = tokenize(&text);
+            assert_eq!(lexed.comments.len(), 1, "{text:?}");
+            let kinds: Vec<Kind> = lexed.tokens.iter().map(|token| token.kind).collect();
+            assert!(matches!(kinds[..], [Kind::Word, Kind::End]), "{kinds:?}");
+        }
     }
 }

@@ -112,7 +112,7 @@ fn bindings() -> Result<(), Failed> {
                 void main() { color = c + texture(a[1], c.xy) + texture(b, c.xy); }";
     let (_, _, facts) = read(Stage::Fragment, text)?;
     let number = |name: &str| {
-        facts.resources.iter().find(|found| found.name == name).map(|found| found.binding)
+        facts.names.resources.iter().find(|found| found.name == name).map(|found| found.binding)
     };
     same(["a[0]", "a[2]", "b"].map(number), [Some(4), Some(6), Some(5)])?;
     let moved = |(fact, _): &(Fact, _)| match fact {
@@ -124,7 +124,7 @@ fn bindings() -> Result<(), Failed> {
     same(names, vec![("a[1]", 5), ("block", 5)])?;
     for (name, _, found) in &moved {
         let has_it = |resource: &&wgsl::Resource| resource.binding == *found;
-        if facts.resources.iter().filter(has_it).count() != 1 {
+        if facts.names.resources.iter().filter(has_it).count() != 1 {
             return Err(format!("`{name}` shares the binding {found}").into());
         }
     }

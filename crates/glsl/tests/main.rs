@@ -53,7 +53,7 @@ fn check(name: &str, text: &str) -> Result<(), Failed> {
     let translated = translate(text, stage_of(name), SourceId(0), Default::default());
     let written = translated.map_err(|problems| format!("refused: {problems:?}"))?;
     let mut shown = written.text.clone();
-    for resource in &written.facts.resources {
+    for resource in &written.facts.names.resources {
         shown.push_str(&format!("// {resource:?}\n"));
     }
     for (fact, _) in &written.facts.list {

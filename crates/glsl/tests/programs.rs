@@ -133,7 +133,7 @@ fn interface(stage: Stage, text: &str) -> Result<Interface, Failed> {
     }
     let mut bindings = BTreeMap::new();
     let mut places = BTreeSet::new();
-    for resource in &written.facts.resources {
+    for resource in &written.facts.names.resources {
         let names = [
             Some((String::new(), resource.binding)),
             resource.sampler.map(|at| (" sampler".to_owned(), at)),

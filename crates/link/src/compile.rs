@@ -13,7 +13,7 @@ use lamplight_compose::{self as compose, Composed};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use lamplight_emit::{self as emit, targets};
 use lamplight_files::limits::GROUP_BYTES;
-use lamplight_glsl::wgsl::{Clip, InterfaceName, Slot};
+use lamplight_glsl::wgsl::{AuthorNames, Clip, InterfaceName, Resource, Slot};
 use lamplight_validate::{
     self as validate, TranslatedGlsl, Validated, on_large_stack, validate_for_some,
     validate_unguarded,
@@ -62,7 +62,7 @@ fn compile_glsl(
     linker: &Linker<'_>,
 ) -> Result<CompiledUnit, Diagnostics> {
     let clip = positions_of(text.composed, linker.conventions);
-    let TranslatedGlsl { wgsl: mut lean, interface } =
+    let TranslatedGlsl { wgsl: mut lean, names } =
         match validate::glsl_as_plain_wgsl(text.lean, clip) {
             Ok(lean) => lean,
             // Only the author's text has places for errors.
@@ -71,7 +71,7 @@ fn compile_glsl(
     let has_warnings = !std::mem::take(&mut lean.warnings).is_empty();
     let lean = compose::lean(&lean);
     if !has_warnings && let Some(made) = link_whole(&lean, entry, targets, linker)? {
-        return Ok(with_names(made, &interface));
+        return Ok(with_names(made, &names));
     }
     let mut composed = validate::glsl_as_plain_wgsl(text.composed, clip)?.wgsl;
     let mut warnings = std::mem::take(&mut composed.warnings);
@@ -95,12 +95,21 @@ fn compile_glsl(
         false => warning,
     }));
     warnings.extend(made.warnings.iter().cloned());
-    Ok(with_names(CompiledUnit { warnings, ..made }, &interface))
+    Ok(with_names(CompiledUnit { warnings, ..made }, &names))
 }
 
-/// The unit, whose reflection calls inputs and outputs as the author does.
-fn with_names(mut made: CompiledUnit, interface: &[InterfaceName]) -> CompiledUnit {
-    let Reflection { inputs, outputs, .. } = Arc::make_mut(&mut made.unit.reflection);
+/// The unit, whose reflection calls inputs, outputs and bindings as the author does.
+fn with_names(mut made: CompiledUnit, names: &AuthorNames) -> CompiledUnit {
+    let AuthorNames { interface, resources } = names;
+    let Reflection { inputs, outputs, bindings, .. } = Arc::make_mut(&mut made.unit.reflection);
+    for binding in bindings {
+        let is_it = |one: &&Resource| (one.group, one.binding) == (binding.group, binding.binding);
+        // A part of an array or of a structure has a name of its own.
+        let whole = resources.iter().find(is_it).filter(|one| !one.name.contains(['[', '.']));
+        if let Some(found) = whole.filter(|one| one.wgsl == binding.name) {
+            binding.name.clone_from(&found.name);
+        }
+    }
     for (list, are_inputs) in [(inputs, true), (outputs, false)] {
         for varying in list {
             let is_it = |name: &&InterfaceName| {

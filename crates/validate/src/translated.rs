@@ -8,7 +8,7 @@ use lamplight_diagnostic::source::{SourceId, Span};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, Label, Severity, codes};
 use lamplight_glsl::is_for_vulkan;
 use lamplight_glsl::tree::Stage as GlslStage;
-use lamplight_glsl::wgsl::{Clip, Fact, InterfaceName, Options, Written};
+use lamplight_glsl::wgsl::{AuthorNames, Clip, Fact, Options, Written};
 
 use super::advice::{self, Mistake};
 use super::browsers::lint_derivatives;
@@ -71,8 +71,8 @@ pub fn glsl_as_wgsl(composed: &Composed, clip: Clip) -> Result<Composed, Diagnos
 pub struct TranslatedGlsl {
     /// The text. Its warnings are what WGSL has no word for.
     pub wgsl: Composed,
-    /// What the author calls the inputs and outputs, which are parameters and members there.
-    pub interface: Vec<InterfaceName>,
+    /// What the author calls the inputs, the outputs and the bindings.
+    pub names: AuthorNames,
 }
 
 /// As [`glsl_as_wgsl`], without the filter that turns the rule for derivatives off. So the rule can be
@@ -126,7 +126,7 @@ fn as_wgsl(composed: &Composed, options: Options) -> Result<TranslatedGlsl, Diag
         decisions: composed.decisions.clone(),
         library: composed.library,
     };
-    Ok(TranslatedGlsl { wgsl, interface: facts.interface })
+    Ok(TranslatedGlsl { wgsl, names: facts.names })
 }
 
 /// Validates a text in GLSL by its translation, and looks for what a lint reports.

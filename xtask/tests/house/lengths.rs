@@ -27,7 +27,6 @@ const FUNCTIONS: &[(&str, &str, &str)] = &[
     ("crates/validate/src/words/entry.rs", "varying_words", ARMS),
     ("crates/validate/src/words/expression.rs", "expression_words", ARMS),
     ("crates/validate/src/words/function.rs", "function_words", ARMS),
-    ("crates/validate/src/words/tokens.rs", "token_text", ARMS),
     ("crates/validate/src/words/types.rs", "type_of", ARMS),
 ];
 

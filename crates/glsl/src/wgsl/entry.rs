@@ -177,7 +177,7 @@ impl<'s> Writer<'s> {
     /// Notes what the author calls an input or output.
     fn name_slot(&mut self, is_input: bool, slot: Slot, name: &str) {
         let name = name.to_owned();
-        self.facts.interface.push(InterfaceName { is_input, slot, name });
+        self.facts.names.interface.push(InterfaceName { is_input, slot, name });
     }
 
     /// An input or output with its first location.

@@ -211,7 +211,7 @@ impl Writer<'_> {
         (group, binding): (u32, u32),
         sampler: Option<u32>,
     ) {
-        self.facts.resources.push(Resource { name, wgsl, group, binding, sampler });
+        self.facts.names.resources.push(Resource { name, wgsl, group, binding, sampler });
     }
 
     /// Textures, samplers and images of a variable, in structures and arrays too.
@@ -387,7 +387,7 @@ impl Writer<'_> {
             let ty = self.bound_text(key.0, ty);
             let line = format!("@group({group}) @binding({binding}) var {name}: {ty};");
             self.declarations.entry(key.0).or_default().push(line);
-            for resource in &mut self.facts.resources {
+            for resource in &mut self.facts.names.resources {
                 if resource.wgsl == texture {
                     resource.sampler = Some(binding);
                 }

@@ -33,7 +33,7 @@ use crate::program::Numbers;
 use crate::tree::{Item, Op, Place, Shader, Stage};
 use crate::types::Type;
 use memory::Mem;
-pub use output::{Fact, Facts, InterfaceName, Resource, Segment, Slot};
+pub use output::{AuthorNames, Fact, Facts, InterfaceName, Resource, Segment, Slot};
 use output::{Line, Lines};
 
 /// How to translate.

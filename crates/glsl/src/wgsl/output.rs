@@ -169,13 +169,19 @@ pub struct InterfaceName {
     pub name: String,
 }
 
-/// The side table.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Facts {
+/// What the author calls what the host sees.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct AuthorNames {
     /// Inputs and outputs.
     pub interface: Vec<InterfaceName>,
     /// Uniforms, buffers, textures and images.
     pub resources: Vec<Resource>,
+}
+
+/// The side table.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Facts {
+    pub names: AuthorNames,
     /// What else there is, with the declarations.
     pub list: Vec<(Fact, At)>,
 }
