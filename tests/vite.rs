@@ -260,7 +260,7 @@ fn types_refuse_wrong_keys(version: &str) -> Outcome {
 /// A shader that does not compile, a key that there is not, and a command that is not installed.
 fn mistakes_end_a_build(version: &str) -> Outcome {
     const MISTAKES: [(&str, &str, &str, &[&str]); 3] = [
-        ("tints.wesl", "1.0, 0.6, 0.2", "no_such", &["tints.wesl:2:40", "identifier: `no_such`"]),
+        ("tints.wesl", "1.0, 0.6, 0.2", "no_such", &["tints.wesl:2:36", "identifier: `no_such`"]),
         ("main.ts", "\"warm\"", "\"hot\"", &["axis `tint` has no value `hot`; there are: white"]),
         (
             "vite.config.js",

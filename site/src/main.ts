@@ -33,6 +33,9 @@ function named(page: string): typeof PAGES[string] {
     return Object.hasOwn(PAGES, page) ? PAGES[page] : missing(`The site has no page ${repeated(page)}.`);
 }
 
+// The address of the icon is relative to the file that was opened, and the page changes its own address.
+for (const icon of document.querySelectorAll<HTMLLinkElement>("link[rel=icon]")) icon.href = icon.href;
+
 let leave: (() => void) | void;
 let opened = 0;
 

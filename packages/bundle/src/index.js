@@ -45,6 +45,8 @@ function notFound(what, name, known) {
 }
 
 /** Eight bytes as a number; one beyond 2^53 is out of range anyway. */
+const hexOf = (bytes) => Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
+
 const long = (view, at) => view.getUint32(at, true) + view.getUint32(at + 4, true) * 2 ** 32;
 
 const viewOf = (bytes) => new DataView(bytes.buffer, bytes.byteOffset, bytes.length);
@@ -221,9 +223,8 @@ export class Bundle {
     const [group, offset, size, words] = this.record(blob * 32);
     const hash = this.parts[BLOBS].subarray(blob * 32 + 16, blob * 32 + 32);
     if (group === NONE) {
-      const digits = [...hash.subarray(0, 8)].map((byte) => byte.toString(16).padStart(2, "0"));
       if (!/^[a-z0-9]+(\.[a-z0-9]+)*$/i.test(extension)) damaged("a file has no proper extension");
-      return { file: `blobs/${digits.join("")}.${extension}`, offset, size, hash };
+      return { file: `blobs/${hexOf(hash.subarray(0, 8))}.${extension}`, offset, size, hash };
     }
     if (group >= groups) damaged("a group is out of range");
     return { group, offset, size, words, hash };
@@ -326,8 +327,7 @@ export class Shader {
     this.entry = native.entry_name;
     this.stage = reflection.stage;
     this.size = blob.size;
-    /** Of the bytes: equal hashes are equal outputs. */
-    this.hash = [...blob.hash].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+    this.hash = hexOf(blob.hash);
     this.reflection = reflection;
     this.native = native;
     this.constants = constants;

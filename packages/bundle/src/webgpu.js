@@ -34,11 +34,7 @@ function resourceOf({ kind, size, writable, texture }) {
   }
 }
 
-/**
- * The entries of each group of a program's layout, by the number of the group.
- *
- * Throws where permutations bind different things in one place: each needs a layout of its own.
- */
+/** The entries of each group of a program's layout. Throws where permutations bind different things. */
 export function layoutEntries(layout) {
   const groups = [];
   for (const binding of layout) {
@@ -57,12 +53,9 @@ export function layoutEntries(layout) {
   return Array.from(groups, (entries) => entries ?? []);
 }
 
-/**
- * One pipeline layout for all permutations of a program, and its bind group layouts. What the
- * permutations bind is that of a bundle, or a list.
- */
+/** One pipeline layout for all permutations of a program, and its bind group layouts. */
 export function pipelineLayout(device, bundle, program, { language } = {}) {
-  const all = Array.isArray(bundle) ? bundle : bundle.layout(program, language);
+  const all = bundle.layout?.(program, language) ?? bundle;
   const groups = layoutEntries(all).map((entries, group) =>
     device.createBindGroupLayout({ label: `${program} group ${group}`, entries }),
   );

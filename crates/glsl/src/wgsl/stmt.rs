@@ -81,7 +81,7 @@ impl Writer<'_> {
                 format!("{name}: ptr<function, {ty}>")
             }
             _ if var.written || var.indexed => {
-                let name = self.local_name(&format!("{}_in", var.name));
+                let name = self.local_name(&var.name);
                 let text = format!("{name}: {ty}");
                 self.copied.insert(index, name);
                 text
