@@ -175,6 +175,18 @@ pub const CASES: &[(&str, &str)] = &[
         "barriers",
         "shared int s[2]; void main() { s[0] = 3; memoryBarrierShared(); barrier(); s[1] = s[0] + 1; barrier(); memoryBarrier(); put(s[1]); }",
     ),
+    (
+        "depth textures through functions",
+        "layout(binding = 3) uniform texture2D map; layout(binding = 4) uniform samplerShadow near; layout(binding = 5) uniform sampler plain; float hard(texture2D t, samplerShadow s, vec3 at) { return textureLod(sampler2DShadow(t, s), at, 0.0); } vec4 read(texture2D t, sampler s, vec2 at) { return textureLod(sampler2D(t, s), at, 0.0); } float both(texture2D t, samplerShadow s, sampler o, vec2 at) { vec4 d = read(t, o, at); put(d.x); put(d.y); put(d.z); put(d.w); return hard(t, s, vec3(at, 0.4)); } void main() { for (int i = 0; i < 16; i++) put(both(map, near, plain, (vec2(i % 4, i / 4) + 0.5) / 4.0)); }",
+    ),
+    (
+        "depth textures gathered and fetched",
+        "layout(binding = 3) uniform texture2D map; layout(binding = 4) uniform samplerShadow near; layout(binding = 5) uniform sampler plain; void main() { put(textureLod(sampler2DShadow(map, near), vec3(0.3), 0.0)); for (int i = 0; i < 4; i++) { vec2 at = vec2(i % 2 + 1, i / 2 + 1) / 4.0; vec4 a = textureGather(sampler2D(map, plain), at); vec4 b = textureGather(sampler2D(map, plain), at, 1); vec4 c = textureGather(sampler2D(map, plain), at, 3); vec4 d = textureGather(sampler2DShadow(map, near), at, 0.5); vec4 e = texelFetch(map, ivec2(i), 0); for (int k = 0; k < 4; k++) { put(a[k]); put(b[k]); put(c[k]); put(d[k]); put(e[k]); } } }",
+    ),
+    (
+        "comparisons by gradients of zero",
+        "layout(binding = 3) uniform texture2D map; layout(binding = 4) uniform samplerShadow near; layout(binding = 5) uniform sampler plain; void main() { for (int i = 0; i < 16; i++) put(textureGrad(sampler2DShadow(map, near), vec3((vec2(i % 4, i / 4) + 0.5) / 4.0, 0.4), vec2(0.0), vec2(0.0))); }",
+    ),
 ];
 
 /// Cases with the words that the specification gives, where glslang differs: it copies arguments

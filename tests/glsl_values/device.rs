@@ -9,6 +9,8 @@ pub const WORDS: usize = 256;
 const UNIFORM_BYTES: u64 = 1024;
 /// Bytes of the buffer that programs read.
 const STORAGE_BYTES: u64 = 4096;
+/// Texels at each side of the depth texture that programs read.
+const SIDE: u32 = 4;
 
 /// An open device.
 pub struct Device {
@@ -16,6 +18,9 @@ pub struct Device {
     queue: wgpu::Queue,
     faults: Arc<Mutex<Vec<String>>>,
     layout: wgpu::BindGroupLayout,
+    depths: wgpu::TextureView,
+    /// One that compares, and one that does not.
+    samplers: [wgpu::Sampler; 2],
 }
 
 impl Device {
@@ -44,7 +49,12 @@ impl Device {
             sink.lock().unwrap().push(error.to_string());
         }));
         let layout = layout_of(&device);
-        Ok(Self { device, queue, faults, layout })
+        let depths = depth_texture(&device, &queue);
+        let sampler = |compare| {
+            device.create_sampler(&wgpu::SamplerDescriptor { compare, ..Default::default() })
+        };
+        let samplers = [Some(wgpu::CompareFunction::LessEqual), None].map(sampler);
+        Ok(Self { device, queue, faults, layout, depths, samplers })
     }
 
     /// The words that the original text writes.
@@ -118,12 +128,13 @@ impl Device {
     }
 
     fn group(&self, buffers: [&wgpu::Buffer; 3]) -> wgpu::BindGroup {
+        let buffers = buffers.map(wgpu::Buffer::as_entire_binding);
+        let depths = wgpu::BindingResource::TextureView(&self.depths);
+        let samplers = self.samplers.each_ref().map(wgpu::BindingResource::Sampler);
+        let resources = buffers.into_iter().chain([depths]).chain(samplers);
         let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
-            .zip(buffers)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
             .collect();
         self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
@@ -152,22 +163,58 @@ fn input_word(index: u32) -> u32 {
 }
 
 fn layout_of(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let kinds = [
+    let buffers = [
         wgpu::BufferBindingType::Storage { read_only: false },
         wgpu::BufferBindingType::Uniform,
         wgpu::BufferBindingType::Storage { read_only: true },
     ];
+    let buffers = buffers.map(|ty| wgpu::BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    });
+    let depths = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Depth,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let samplers = [wgpu::SamplerBindingType::Comparison, wgpu::SamplerBindingType::NonFiltering];
+    let samplers = samplers.map(wgpu::BindingType::Sampler);
     let entries: Vec<wgpu::BindGroupLayoutEntry> = (0..)
-        .zip(kinds)
+        .zip(buffers.into_iter().chain([depths]).chain(samplers))
         .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+            ty,
             count: None,
         })
         .collect();
     let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
     device.create_bind_group_layout(&descriptor)
+}
+
+/// A depth texture whose texels all differ.
+fn depth_texture(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::TextureView {
+    let size = wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 };
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Depth16Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let depth = |index: u32| (index * 7 % (SIDE * SIDE) * 4096) as u16;
+    let bytes: Vec<u8> = (0..SIDE * SIDE).flat_map(|index| depth(index).to_le_bytes()).collect();
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(SIDE * 2),
+        rows_per_image: None,
+    };
+    queue.write_texture(texture.as_image_copy(), &bytes, layout, size);
+    texture.create_view(&Default::default())
 }
 
 /// Compiles a compute shader by glslang.

@@ -54,16 +54,11 @@ impl Runnable {
         self.unit.reflection.stage == Stage::Fragment
     }
 
-    /// The stage with all of its text in a form that naga reads, with functions that the entry point
-    /// does not need; `None` if there is none. WGSL was validated with all of them before, and what
-    /// naga's front end does not read of GLSL is compiled from its translation.
+    /// The stage, if its text is valid with the functions that the entry point does not need. WESL was
+    /// validated with all of them before.
     pub fn as_a_whole(self) -> Option<Self> {
-        let is_read = |composed: &Composed| validate(&lean(composed)).is_ok();
-        if self.composed.language == Language::Wesl || is_read(&self.composed) {
-            return Some(self);
-        }
-        let composed = glsl_as_wgsl(&self.composed, Clip::Kept).ok()?;
-        is_read(&composed).then_some(Self { composed, ..self })
+        let is_valid = || validate(&lean(&self.composed)).is_ok();
+        (self.composed.language == Language::Wesl || is_valid()).then_some(self)
     }
 }
 

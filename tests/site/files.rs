@@ -44,7 +44,7 @@ pub fn files() -> Outcome {
         described(&page, file, name)?;
         titles.insert(between(&page, "<title>", "</title>").unwrap_or_default().to_owned());
         let is_folder = file == "index.html" || file.ends_with("/index.html");
-    let address = if is_folder { file.trim_end_matches("index.html") } else { file };
+        let address = if is_folder { file.trim_end_matches("index.html") } else { file };
         assert!(map.contains(&format!("<loc>{SITE}{address}</loc>")), "the map lacks {file}");
         count += linked(&folder, file, &page)?;
     }

@@ -5,8 +5,7 @@
 //! alone are compiled once, and an edited comment does not cause any compilation.
 //!
 //! Type aliases are replaced by what they stand for. naga makes a type of its own for an alias, so
-//! in Metal an array and its alias would be two types. GLSL variables with the name of a block's
-//! member are renamed, since naga would take one for the other.
+//! in Metal an array and its alias would be two types.
 
 use std::borrow::Cow;
 use std::ops::Range;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use rustc_hash::FxHashMap;
 
 use super::{Part, PartKind};
+use lamplight_syntax::wesl::blank::comment_length;
 use lamplight_syntax::words::{Lexeme, LexemeKind, piece_at, words};
 
 /// The declarations of a text, and which of them each one names. No name of the module's scope may be
@@ -61,29 +62,6 @@ fn declaration(text: &str, from: usize) -> Option<Part> {
 /// Lexemes that a declaration has before its name, and its name: attributes of an entry point and the
 /// address space of a variable are among them.
 const HEAD: usize = 48;
-
-/// How long the comment at the start of a text is; 0 if there is none.
-fn comment_length(text: &str) -> usize {
-    if text.starts_with("//") {
-        return text.find('\n').unwrap_or(text.len());
-    }
-    if !text.starts_with("/*") {
-        return 0;
-    }
-    let (mut at, mut depth) = (2, 1);
-    while depth > 0 {
-        let Some(next) = text[at..].find(['*', '/']) else { return text.len() };
-        at += next;
-        let (step, change) = match text.as_bytes().get(at..at + 2) {
-            Some(b"*/") => (2, -1),
-            Some(b"/*") => (2, 1),
-            _ => (1, 0),
-        };
-        at += step;
-        depth += change;
-    }
-    at
-}
 
 fn part_of(head: &[Lexeme<'_>], range: Range<usize>) -> Part {
     let (mut found, mut at) = (None, 0);

@@ -151,6 +151,26 @@ fn reported_once() -> Result<(), Failed> {
 const REFUSED: &[(Stage, &str, &str, &str)] = &[
     (
         Stage::Fragment,
+        "layout(binding = 0) uniform texture2D a; layout(binding = 1) uniform texture2D b; \
+         layout(binding = 2) uniform samplerShadow c; layout(binding = 3) uniform sampler d; \
+         vec4 f(texture2D map) { return texture(sampler2D(map, d), vec2(0.0)); } \
+         void main() { f(a); f(b); texture(sampler2DShadow(a, c), vec3(0.0)); }",
+        "map",
+        "`map` is given a texture that is compared with and one that is not: WGSL has two types for \
+         these",
+    ),
+    (
+        Stage::Fragment,
+        "layout(binding = 0) uniform texture2D a; layout(binding = 1) uniform samplerShadow b; \
+         layout(binding = 2) uniform sampler c; layout(location = 0) out vec4 o; void main() { \
+         o.x = texture(sampler2DShadow(a, b), vec3(0.0)); \
+         o = textureLod(sampler2D(a, c), vec2(0.0), 0.5); }",
+        "textureLod(sampler2D(a, c), vec2(0.0), 0.5)",
+        "a texture that is also compared with is sampled at a constant level that is whole, or by \
+         derivatives, in WGSL",
+    ),
+    (
+        Stage::Fragment,
         "in float f(vec3 a) { return a.x; } void main() { }",
         "in",
         "a result is not `in`",

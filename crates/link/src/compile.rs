@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::browsers::fit_for_browsers;
-use super::{Linker, Reason};
+use super::{Linked, Linker, Reason};
 use lamplight_bundle::{
     Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Language, Reflection,
     SourceClip, SpirvForm, Target, Unit,
@@ -53,8 +53,8 @@ pub fn compile(
     }
 }
 
-/// Compiles a text in GLSL. Most texts are linked from their lean form alone; only what has to be told to
-/// the author is looked for in a translation of his own text.
+/// Compiles a text in GLSL. Most texts are linked from their lean form alone; warnings and errors are
+/// looked for in a translation of the author's own text.
 fn compile_glsl(
     text: &TextForms<'_>,
     entry: &str,
@@ -70,7 +70,7 @@ fn compile_glsl(
         };
     let has_warnings = !std::mem::take(&mut lean.warnings).is_empty();
     let lean = compose::lean(&lean);
-    if !has_warnings && let Some(made) = link_whole(&lean, entry, targets, linker)? {
+    if !has_warnings && let Some(made) = link_clean(&lean, entry, targets, linker)? {
         return Ok(with_names(made, &names));
     }
     let mut composed = validate::glsl_as_plain_wgsl(text.composed, clip)?.wgsl;
@@ -94,8 +94,8 @@ fn compile_glsl(
         )),
         false => warning,
     }));
-    warnings.extend(made.warnings.iter().cloned());
-    Ok(with_names(CompiledUnit { warnings, ..made }, &names))
+    warnings.extend(made.warnings);
+    Ok(with_names(CompiledUnit { warnings, unit: made.unit, whole: made.whole }, &names))
 }
 
 /// The unit, whose reflection calls inputs, outputs and bindings as the author does.
@@ -128,23 +128,35 @@ fn with_names(mut made: CompiledUnit, names: &AuthorNames) -> CompiledUnit {
 }
 
 /// A text that is linked in all targets and breaks no rule of browsers.
-fn link_whole(
+fn link_clean(
     lean: &Composed,
     entry: &str,
     targets: &[Target],
     linker: &Linker<'_>,
 ) -> Result<Option<CompiledUnit>, Diagnostics> {
     let Ok(linked) = linker.link(lean, entry) else { return Ok(None) };
-    if linked.suspect || linked.targets.iter().any(Result::is_err) {
+    let is_suspect = linked.suspect;
+    let (unit, whole) = unit_of(linked, targets);
+    if is_suspect || !whole.is_empty() {
         return Ok(None);
     }
-    let made = targets
-        .iter()
-        .zip(linked.targets)
-        .filter_map(|(target, made)| Some((target.name().to_owned(), made.ok()?)));
-    let unit = Unit { reflection: linked.reflection, targets: made.collect() };
     check_size(&unit).map_err(|error| vec![error])?;
-    Ok(Some(CompiledUnit { unit, warnings: Vec::new(), whole: Vec::new() }))
+    Ok(Some(CompiledUnit { unit, warnings: Vec::new(), whole }))
+}
+
+/// The unit of the targets that are linked, and those that are not, each with the reason.
+fn unit_of(linked: Linked, targets: &[Target]) -> (Unit, Vec<(Target, Reason)>) {
+    let mut unit = Unit { reflection: linked.reflection, targets: BTreeMap::new() };
+    let mut whole = Vec::new();
+    for (target, made) in targets.iter().zip(linked.targets) {
+        match made {
+            Ok(artifact) => {
+                unit.targets.insert(target.name().to_owned(), artifact);
+            }
+            Err(reason) => whole.push((*target, reason)),
+        }
+    }
+    (unit, whole)
 }
 
 /// The clip space that the positions of a text are converted from.
@@ -171,22 +183,15 @@ fn compile_wgsl(
             return Ok(CompiledUnit { unit, warnings, whole });
         }
     };
-    let mut unit = Unit { reflection: linked.reflection, targets: BTreeMap::new() };
-    let mut whole = Vec::new();
-    for (target, made) in targets.iter().zip(linked.targets) {
-        match made {
-            Ok(artifact) => {
-                unit.targets.insert(target.name().to_owned(), artifact);
-            }
-            Err(reason) => whole.push((*target, reason)),
-        }
-    }
+    let is_suspect = linked.suspect;
+    let (mut unit, whole) = unit_of(linked, targets);
     if !whole.is_empty() {
         let left: Vec<Target> = whole.iter().map(|(target, _)| *target).collect();
         unit.targets.extend(compile_whole(text, entry, &left, linker)?.0.targets);
     }
-    let warnings = if linked.suspect { lint_text(text, targets)? } else { Vec::new() };
-    if linked.suspect {
+    let mut warnings = Vec::new();
+    if is_suspect {
+        warnings = lint_text(text, targets)?;
         fit_unit(text, entry, &mut unit)?;
     }
     check_size(&unit).map_err(|error| vec![error])?;
@@ -224,7 +229,7 @@ fn try_and_validate(
 /// Does what [`compile`] and [`validate()`] would do with a large text. It is called in a process
 /// of its own, and its result does not matter: only that the process survives.
 pub fn perform_job(job: &validate::SandboxJob) {
-    let composed = Composed::of_text(job.language, job.stage, job.text.clone());
+    let composed = Composed::of_text(Language::Wesl, None, job.text.clone());
     let Some(outputs) = &job.outputs else {
         let _ = validate_for_some(&composed);
         return;

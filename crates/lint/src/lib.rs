@@ -210,9 +210,11 @@ fn lint_wgsl(graph: &Graph, composed: &Composed) -> Result<Diagnostics, Diagnost
 }
 
 fn lint_glsl(graph: &Graph, composed: &Composed) -> Result<Diagnostics, Diagnostics> {
-    let found = validate::lint_as_wgsl(composed)?;
-    let own = graph.own(documented::contradictions(composed));
-    Ok(own.into_iter().chain(graph.own(found)).collect())
+    let mut wgsl = validate::glsl_as_plain_wgsl(composed, Default::default())?.wgsl;
+    let warnings = std::mem::take(&mut wgsl.warnings);
+    let found = validate::validate_translation(&wgsl)?;
+    let own = documented::contradictions(&wgsl).into_iter().chain(warnings).chain(found);
+    Ok(graph.own(own.collect()))
 }
 
 /// Each diagnostic once, in the order of places. A module is read again for each one that reaches

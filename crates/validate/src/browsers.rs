@@ -30,6 +30,16 @@ pub fn lint_derivatives(wgsl: &Composed) -> Diagnostics {
     derivatives.filter_map(|problem| derivative_of_glsl(wgsl, problem)).collect()
 }
 
+/// Everything that a lint reports of a text in GLSL, by its translation.
+pub fn lint_translation(wgsl: &Composed) -> Diagnostics {
+    let problems = on_large_stack(|| rules::check(&wgsl.text));
+    let described = problems.iter().filter_map(|problem| match problem.rule {
+        Rule::Derivative => derivative_of_glsl(wgsl, problem),
+        _ => describe(wgsl, problem, false),
+    });
+    described.collect()
+}
+
 fn derivative_of_glsl(wgsl: &Composed, problem: &Problem) -> Option<Diagnostic> {
     let place = wgsl.map.lookup(problem.place.range())?;
     let text = wgsl.text.get(problem.place.range()).unwrap_or_default();

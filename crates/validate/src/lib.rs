@@ -45,8 +45,8 @@ pub use operands::{
 #[doc(hidden)]
 pub use sandbox::{STAGE, SandboxJob, SandboxOutputs, try_in_sandbox};
 pub use translated::{
-    TranslatedGlsl, glsl_as_plain_wgsl, glsl_as_wgsl, lint_as_wgsl, of_translation,
-    of_translations, positions_of, translate_glsl,
+    TranslatedGlsl, glsl_as_plain_wgsl, glsl_as_wgsl, of_translation, of_translations,
+    positions_of, translate_glsl, validate_translation,
 };
 pub use uses::{first_use, functions, makes_scalar};
 pub use words::NOT_EVERY;

@@ -4,7 +4,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::limits;
-use lamplight_bundle::{Language, Stage};
 use lamplight_compose::{Composed, lean};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_files::sandbox;
@@ -16,11 +15,7 @@ pub const STAGE: &str = "naga";
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename = "Job")]
 pub struct SandboxJob {
-    /// Language of the text.
-    pub language: Language,
-    /// Stage of a text in GLSL.
-    pub stage: Option<Stage>,
-    /// The text, without comments and layout.
+    /// The text in WGSL, without comments and layout.
     pub text: String,
     /// What is written from it.
     pub outputs: Option<SandboxOutputs>,
@@ -40,7 +35,7 @@ pub struct SandboxOutputs {
     pub bounds: String,
 }
 
-/// Tries a text in another process if it is not small. Errors have the places of `placed`, whose
+/// Tries a text in WGSL in another process if it is not small. Errors have the places of `placed`, whose
 /// lean form the text may be.
 ///
 /// # Errors
@@ -55,8 +50,7 @@ pub fn try_in_sandbox(
     }
     // A text and its lean form share one run in the sandbox.
     let text = lean(composed).text;
-    let (language, stage) = (composed.language, composed.stage);
-    let job = SandboxJob { language, stage, text, outputs: outputs() };
+    let job = SandboxJob { text, outputs: outputs() };
     let Ok(job) = serde_json::to_vec(&job) else { return Ok(()) };
     sandbox::try_in_sandbox(STAGE, &job).map_err(|how| exhausted_process(placed, &how))
 }

@@ -11,7 +11,7 @@ use lamplight_glsl::tree::Stage as GlslStage;
 use lamplight_glsl::wgsl::{AuthorNames, Clip, Fact, Options, Written};
 
 use super::advice::{self, Mistake};
-use super::browsers::lint_derivatives;
+use super::browsers::lint_translation;
 use super::{CAPABILITIES, hints, lacking, limits, on_large_stack, validate_for_some};
 
 /// How a location is found that fits the other stage.
@@ -129,20 +129,16 @@ fn as_wgsl(composed: &Composed, options: Options) -> Result<TranslatedGlsl, Diag
     Ok(TranslatedGlsl { wgsl, names: facts.names })
 }
 
-/// Validates a text in GLSL by its translation, and looks for what a lint reports.
+/// Validates the translation of a text in GLSL, and looks for what a lint reports.
 ///
 /// # Errors
-/// As [`glsl_as_wgsl`].
-pub fn lint_as_wgsl(composed: &Composed) -> Result<Diagnostics, Diagnostics> {
-    let mut wgsl = glsl_as_plain_wgsl(composed, Clip::Kept)?.wgsl;
-    let validated = validate_for_some(&wgsl).map_err(of_translations)?;
-    let mut found = std::mem::take(&mut wgsl.warnings);
-    found.extend(lint_derivatives(&wgsl));
-    found.extend(
-        lacking(&wgsl, &validated, CAPABILITIES)
-            .map(|error| Diagnostic { severity: Severity::Warning, ..error }),
-    );
-    Ok(found)
+/// What is wrong with the translation, which is a mistake of the translator.
+pub fn validate_translation(wgsl: &Composed) -> Result<Diagnostics, Diagnostics> {
+    let validated = validate_for_some(wgsl).map_err(of_translations)?;
+    let lacking = lacking(wgsl, &validated, CAPABILITIES);
+    // A target that is asked for and lacks it is an error of `compile`.
+    let lacking = lacking.map(|error| Diagnostic { severity: Severity::Warning, ..error });
+    Ok(lint_translation(wgsl).into_iter().chain(lacking).collect())
 }
 
 /// [`of_translation`] of each error.

@@ -20,7 +20,7 @@ pub(super) struct Compared {
 }
 
 impl Writer<'_> {
-    /// Finds what is compared with. A parameter that is given textures of both kinds is refused.
+    /// Finds what is compared with. A parameter that is given both kinds is refused.
     pub(super) fn plan_comparisons(&mut self) {
         let passed = passed_resources(self.shader);
         let mut found = compared_here(self.shader);
@@ -28,15 +28,17 @@ impl Writer<'_> {
             spread(set, &passed);
         }
         for (param, given) in &passed {
-            let is_open = |one: &u32| !found.textures.contains(one);
-            if given.iter().any(|one| !is_open(one)) && given.iter().any(is_open) {
-                let var = self.var(*param);
-                let message = format!(
-                    "`{}` is given a texture that is compared with and one that is not: WGSL has two \
-                     types for these",
-                    var.name
-                );
-                self.refuse(var.at, message);
+            for (set, what) in [(&found.textures, "texture"), (&found.samplers, "sampler")] {
+                let compared = given.intersection(set).count();
+                if (1..given.len()).contains(&compared) {
+                    let var = self.var(*param);
+                    let message = format!(
+                        "`{}` is given a {what} that is compared with and one that is not: WGSL has two \
+                         types for these",
+                        var.name
+                    );
+                    self.refuse(var.at, message);
+                }
             }
         }
         self.compared = found;

@@ -8,7 +8,6 @@
 mod constant;
 mod docs;
 
-use lamplight_bundle::Language;
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Code, Diagnostic, Diagnostics, codes};
 use lamplight_rules::{Declared, Head, Lookup, Piece, Place};
@@ -24,18 +23,12 @@ const ALLOW: &str = "lamplight: allow ";
 /// How far from 1 the length of a constant vector may be: four digits are often written.
 const LENGTH: f64 = 1e-3;
 
-/// The arguments of a text that contradict documentation.
+/// The arguments of a text in WGSL that contradict documentation.
 pub fn contradictions(composed: &Composed) -> Diagnostics {
     if !composed.text.contains("Parameters:") && !may_have_degrees(&composed.text) {
         return Diagnostics::new();
     }
-    match composed.language {
-        Language::Wesl => validate::on_large_stack(|| contradictions_of(composed)),
-        Language::Glsl => match validate::glsl_as_wgsl(composed, Default::default()) {
-            Ok(translated) => validate::on_large_stack(|| contradictions_of(&translated)),
-            Err(_) => Diagnostics::new(),
-        },
-    }
+    validate::on_large_stack(|| contradictions_of(composed))
 }
 
 fn may_have_degrees(text: &str) -> bool {
