@@ -181,7 +181,7 @@ pub const CASES: &[(&str, &str)] = &[
     ),
     (
         "depth textures gathered and fetched",
-        "layout(binding = 3) uniform texture2D map; layout(binding = 4) uniform samplerShadow near; layout(binding = 5) uniform sampler plain; void main() { put(textureLod(sampler2DShadow(map, near), vec3(0.3), 0.0)); for (int i = 0; i < 4; i++) { vec2 at = vec2(i % 2 + 1, i / 2 + 1) / 4.0; vec4 a = textureGather(sampler2D(map, plain), at); vec4 b = textureGather(sampler2D(map, plain), at, 1); vec4 c = textureGather(sampler2D(map, plain), at, 3); vec4 d = textureGather(sampler2DShadow(map, near), at, 0.5); vec4 e = texelFetch(map, ivec2(i), 0); for (int k = 0; k < 4; k++) { put(a[k]); put(b[k]); put(c[k]); put(d[k]); put(e[k]); } } }",
+        "layout(binding = 3) uniform texture2D map; layout(binding = 4) uniform samplerShadow near; layout(binding = 5) uniform sampler plain; void main() { put(textureLod(sampler2DShadow(map, near), vec3(0.3), 0.0)); for (int i = 0; i < 4; i++) { vec2 at = vec2(i % 2 + 1, i / 2 + 1) / 4.0; vec4 a = textureGather(sampler2D(map, plain), at); vec4 b = textureGather(sampler2D(map, plain), at, 1); vec4 c = textureGather(sampler2D(map, plain), at, 3); vec4 d = textureGather(sampler2DShadow(map, near), at, 0.5); vec4 e = texelFetch(sampler2D(map, plain), ivec2(i), 0); for (int k = 0; k < 4; k++) { put(a[k]); put(b[k]); put(c[k]); put(d[k]); put(e[k]); } } }",
     ),
     (
         "comparisons by gradients of zero",
