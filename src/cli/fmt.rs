@@ -1,7 +1,7 @@
 //! `lamplight fmt`: lays out shaders anew. Only blanks change.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
 use similar::TextDiff;
@@ -85,9 +85,7 @@ fn files_of(requested: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             return Err(Failure::input(message));
         }
         if path.is_dir() {
-            let mut below = Disk::new(path)?.list(EXTENSIONS);
-            below.sort();
-            files.extend(below.iter().map(|file| path.join(file)));
+            files.extend(Disk::new(path)?.list(EXTENSIONS).iter().map(|file| path.join(file)));
         } else {
             files.push(path.clone());
         }
@@ -156,7 +154,14 @@ fn language_of(file: &Path, arguments: &Arguments) -> Result<Language, Failure> 
 
 /// The options for a file: those of the nearest manifest.
 fn options_of(file: &Path, sources: &mut SourceSet) -> Result<Options, Failure> {
-    let file = std::path::absolute(file)?;
+    let mut file = std::path::absolute(file)?;
+    // Not all folders in a path with `..` are above the file.
+    if file.components().any(|part| part == Component::ParentDir) {
+        let folder = file.parent().and_then(|folder| folder.canonicalize().ok());
+        if let Some((folder, name)) = folder.zip(file.file_name()) {
+            file = folder.join(name);
+        }
+    }
     let read =
         |path: &Path| String::from_utf8(input::read_file(path, FILE_BYTES as u64).ok()?).ok();
     format::options_for(&file, Options::default(), sources, read)

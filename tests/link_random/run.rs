@@ -24,9 +24,8 @@ use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{Buffers, DrawItem, Drawing, EntryPoint, Mesh};
 use lamplight::execute::shipped::Shipped;
 use lamplight::execute::{Session, ShippedPair};
-use lamplight::glsl::wgsl::Clip;
 use lamplight::picture::frame::{pack_buffer, probe};
-use lamplight::validate::{Validated, glsl_as_wgsl, validate};
+use lamplight::validate::{Validated, validate};
 
 use super::same::Finding;
 use crate::frames::fixture;

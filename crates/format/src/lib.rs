@@ -60,13 +60,16 @@ pub fn format_text(
     };
     let mut diagnostics: Diagnostics =
         laid.unpaired.iter().map(|one| kept_item(one, place(one.start, one.end))).collect();
-    let formatted = laid.formatted.unwrap_or_else(|(start, end)| {
-        let message = "a token would change: the text stays as it is";
-        let error = Diagnostic::error(codes::NOT_FORMATTED, message);
-        diagnostics.push(error.at(place(start, end), "this token"));
-        lines.clone().into_owned()
-    });
-    Formatted { text: edit::with_line_ends(formatted, text, options), diagnostics }
+    let text = match laid.formatted {
+        Ok(formatted) => edit::with_line_ends(formatted, text, options),
+        Err((start, end)) => {
+            let message = "a token would change: the text stays as it is";
+            let error = Diagnostic::error(codes::NOT_FORMATTED, message);
+            diagnostics.push(error.at(place(start, end), "this token"));
+            text.to_owned()
+        }
+    };
+    Formatted { text, diagnostics }
 }
 
 /// The edits that format a text. Each is about blanks alone.

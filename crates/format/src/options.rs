@@ -150,14 +150,13 @@ pub fn options_for(
 /// | `final_newline` | `true`, `false` | `true` |
 ///
 /// # Errors
-/// For keys and values that are not in this table. A text that is not TOML has no table: whoever
-/// reads the rest of the manifest reports that.
+/// For a text that is not TOML, and for keys and values that are not in this table.
 pub fn read_options(
     text: &str,
     source: SourceId,
     base: Options,
 ) -> Result<Option<Options>, Diagnostics> {
-    let Ok(document) = DeTable::parse(text) else { return Ok(None) };
+    let document = DeTable::parse(text).map_err(|error| vec![syntax_error(&error, source)])?;
     let Some(found) = document.get_ref().get(TABLE) else { return Ok(None) };
     let table = Place { source, key: TABLE, value: found };
     let DeValue::Table(entries) = found.get_ref() else {
@@ -169,6 +168,12 @@ pub fn read_options(
         errors.extend(read_entry(&mut options, &place, key.span()).err());
     }
     if errors.is_empty() { Ok(Some(options)) } else { Err(errors) }
+}
+
+fn syntax_error(error: &toml::de::Error, source: SourceId) -> Diagnostic {
+    let span = Span::new(source, error.span().unwrap_or(0..0));
+    let message = error.message().lines().collect::<Vec<_>>().join("; ");
+    Diagnostic::error(codes::MANIFEST_SYNTAX, message).at(span, "")
 }
 
 const KEYS: [&str; 7] =

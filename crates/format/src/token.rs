@@ -2,7 +2,9 @@
 //! tokens too, and each token knows the blanks before it. The text has `\n` as its only line break.
 
 use lamplight_bundle::Language;
+use lamplight_syntax::glsl;
 use lamplight_syntax::wesl::blank::{block_comment, is_blank, is_line_break, line_comment};
+use lamplight_syntax::wesl::{Piece, template_lists};
 use lamplight_syntax::words::{begins_word, number_end, word_end};
 
 /// What a token is.
@@ -187,7 +189,7 @@ fn hash_end(text: &str, at: usize) -> (Kind, usize) {
 fn line_comment_end(text: &str, at: usize, language: Language) -> usize {
     let end = match language {
         Language::Wesl => at + line_comment(&text[at..]),
-        Language::Glsl => logical_line_end(text, at),
+        Language::Glsl => glsl::line_comment_end(text.as_bytes(), at),
     };
     trimmed_end(text, at, end)
 }
@@ -202,26 +204,14 @@ fn trimmed_end(text: &str, start: usize, end: usize) -> usize {
     }
 }
 
-/// The end of a line, with the lines that backslashes at the ends continue.
-fn logical_line_end(text: &str, at: usize) -> usize {
-    let mut end = at;
-    loop {
-        end += text[end..].find('\n').unwrap_or(text.len() - end);
-        if end == text.len() || !text[at..end].ends_with('\\') {
-            return end;
-        }
-        end += 1;
-    }
-}
-
 fn block_comment_end(text: &str, at: usize, language: Language) -> usize {
     let (end, is_closed) = match language {
         Language::Wesl => {
             let (length, is_closed) = block_comment(&text[at..]);
             (at + length, is_closed)
         }
-        Language::Glsl => match text[at + 2..].find("*/") {
-            Some(end) => (at + 2 + end + 2, true),
+        Language::Glsl => match glsl::block_comment_end(text.as_bytes(), at) {
+            Some(end) => (end, true),
             None => (text.len(), false),
         },
     };
@@ -235,6 +225,8 @@ fn directive_end(text: &str, start: usize, language: Language) -> usize {
     let is_import = language == Language::Wesl
         && text[start + 1..].trim_start_matches([' ', '\t']).starts_with("import");
     let (mut at, mut depth) = (start, 0_usize);
+    // Up to where the braces of an import are known to go on.
+    let mut known = start;
     while at < bytes.len() {
         match (bytes[at], bytes.get(at + 1)) {
             (b'/', Some(b'/')) => at = line_comment_end(text, at, language),
@@ -242,69 +234,34 @@ fn directive_end(text: &str, start: usize, language: Language) -> usize {
             (b'\\', Some(b'\n')) => at += 2,
             (b'{', _) if is_import => (at, depth) = (at + 1, depth + 1),
             (b'}', _) if is_import => (at, depth) = (at + 1, depth.saturating_sub(1)),
-            (b'\n', _) if depth == 0 || !has_import_end(&text[at..]) => break,
+            (b'\n', _) if depth == 0 => break,
+            (b'\n', _) if at >= known => match import_end(&text[at..]) {
+                Some(length) => known = at + length,
+                None => break,
+            },
             _ => at += 1,
         }
     }
     trimmed_end(text, start, at)
 }
 
-/// Whether the braces of an import are closed before anything that cannot be in them.
-fn has_import_end(rest: &str) -> bool {
-    rest.find(['}', ';', '(', '=']).is_some_and(|at| rest.as_bytes()[at] == b'}')
+/// Where a brace of an import closes, if nothing that cannot be in its braces stands before that.
+fn import_end(rest: &str) -> Option<usize> {
+    rest.find(['}', ';', '(', '=']).filter(|at| rest.as_bytes()[*at] == b'}')
 }
 
-/// Marks the brackets of template lists, by the algorithm of WGSL's specification.
+/// Marks the brackets of template lists.
 fn mark_templates(text: &str, tokens: &mut [Token]) {
-    // The `<` that may begin a list, with the depth of other brackets there.
-    let mut pending: Vec<(usize, usize)> = Vec::new();
-    let (mut depth, mut at) = (0_usize, 0);
-    // The token of code before this one.
-    let mut before: Option<Kind> = None;
-    while at < tokens.len() {
-        let token = tokens[at];
-        if token.is_comment() {
-            at += 1;
-            continue;
-        }
-        let is_next = |mark: &str| {
-            let next = tokens.get(at + 1);
-            next.is_some_and(|next| next.start == token.end && next.text(text).starts_with(mark))
-        };
-        match token.text(text) {
-            "<" if before == Some(Kind::Word) => match is_next("<") || is_next("=") {
-                true => at += 1,
-                false => pending.push((at, depth)),
-            },
-            ">" => match pending.last().copied() {
-                Some((start, outer)) if outer == depth => {
-                    tokens[start].kind = Kind::TemplateOpen;
-                    tokens[at].kind = Kind::TemplateClose;
-                    pending.pop();
-                }
-                _ if is_next("=") => at += 1,
-                _ => {}
-            },
-            "(" | "[" => depth += 1,
-            ")" | "]" => {
-                drop_pending(&mut pending, depth);
-                depth = depth.saturating_sub(1);
-            }
-            "&&" | "||" => drop_pending(&mut pending, depth),
-            "=" | ";" | "{" | ":" => {
-                depth = 0;
-                pending.clear();
-            }
-            _ => {}
-        }
-        before = tokens.get(at).map(|token| token.kind);
-        at += 1;
-    }
-}
-
-fn drop_pending(pending: &mut Vec<(usize, usize)>, depth: usize) {
-    while pending.last().is_some_and(|(_, outer)| *outer >= depth) {
-        pending.pop();
+    let is_code = |at: &usize| !tokens[*at].is_comment() && tokens[*at].kind != Kind::Directive;
+    let code: Vec<usize> = (0..tokens.len()).filter(is_code).collect();
+    let piece_at = |at: &usize| {
+        let token = &tokens[*at];
+        Piece { text: token.text(text), start: token.start, is_word: token.kind == Kind::Word }
+    };
+    let pieces: Vec<Piece<'_>> = code.iter().map(piece_at).collect();
+    for (open, close) in template_lists(&pieces) {
+        tokens[code[open]].kind = Kind::TemplateOpen;
+        tokens[code[close]].kind = Kind::TemplateClose;
     }
 }
 

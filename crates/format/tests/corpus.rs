@@ -1,6 +1,6 @@
-//! Formats the shaders of folders, given in `LAMPLIGHT_FORMAT_DIRS`, and counts what changes.
-//! `LAMPLIGHT_FORMAT_OPTIONS` has the content of a table `[format]`, and `LAMPLIGHT_FORMAT_DIFF` a
-//! file for the differences.
+//! Formats the shaders of folders, and counts what changes: those of this repository, or those in
+//! `LAMPLIGHT_FORMAT_DIRS`. `LAMPLIGHT_FORMAT_OPTIONS` has the content of a table `[format]`, and
+//! `LAMPLIGHT_FORMAT_DIFF` a file for the differences.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_format::{Language, Options, format_text, read_options};
-use libtest_mimic::Failed;
+use libtest_mimic::{Failed, Trial};
 use similar::{ChangeTag, TextDiff};
 
 use super::lexer::tokens_of;
@@ -27,22 +27,45 @@ struct Counts {
     /// Files that change.
     touched: usize,
     kept: usize,
+    /// Files that are not UTF-8.
+    unread: usize,
     bytes: usize,
     seconds: f64,
 }
 
-pub fn others_code() -> Result<(), Failed> {
-    let folders = std::env::var("LAMPLIGHT_FORMAT_DIRS").unwrap_or_default();
+/// The folders of this repository that have shaders.
+const OWN: [&str; 4] = ["shaderlib", "crates", "tests", "examples"];
+
+pub fn tests() -> Vec<Trial> {
+    vec![Trial::test("others_code", others_code)]
+}
+
+/// The folders to format.
+fn folders(asked: Option<&str>) -> Vec<PathBuf> {
+    match asked {
+        Some(folders) => folders.split(':').map(PathBuf::from).collect(),
+        None => {
+            let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
+            OWN.map(|folder| root.join(folder)).to_vec()
+        }
+    }
+}
+
+fn others_code() -> Result<(), Failed> {
     let mut sources = SourceSet::default();
     let table = std::env::var("LAMPLIGHT_FORMAT_OPTIONS").unwrap_or_default();
     let id = sources.add("options", format!("[format]\n{table}"));
     let options = read_options(&sources.get(id).text, id, Options::default())
         .map_err(|found| format!("{found:?}"))?;
     let (mut mistakes, mut differences) = (Vec::new(), String::new());
-    for folder in folders.split(':').filter(|folder| !folder.is_empty()) {
+    let asked = std::env::var("LAMPLIGHT_FORMAT_DIRS").ok();
+    for folder in folders(asked.as_deref()) {
         let mut counts = Counts::default();
-        for file in shaders_below(Path::new(folder)) {
-            let Ok(text) = fs::read_to_string(&file) else { continue };
+        for file in shaders_below(&folder) {
+            let Ok(text) = String::from_utf8(fs::read(&file)?) else {
+                counts.unread += 1;
+                continue;
+            };
             mistakes.extend(try_file(
                 &file,
                 &text,
@@ -51,7 +74,12 @@ pub fn others_code() -> Result<(), Failed> {
                 &mut differences,
             ));
         }
-        print_counts(folder, &counts);
+        if counts.files == 0 {
+            return Err(format!("no shaders are below {}", folder.display()).into());
+        }
+        if asked.is_some() {
+            print_counts(&folder, &counts);
+        }
     }
     if let Ok(file) = std::env::var("LAMPLIGHT_FORMAT_DIFF") {
         fs::write(file, differences)?;
@@ -59,17 +87,18 @@ pub fn others_code() -> Result<(), Failed> {
     if mistakes.is_empty() { Ok(()) } else { Err(mistakes.join("\n").into()) }
 }
 
-#[allow(clippy::print_stdout)]
-fn print_counts(folder: &str, counts: &Counts) {
+fn print_counts(folder: &Path, counts: &Counts) {
     println!(
-        "{folder}: {} files, {} lines; {} lines of {} files differ ({:.2} %), {} items kept; \
-         {:.1} MB/s",
+        "{}: {} files, {} lines; {} lines of {} files differ ({:.2} %), {} items kept, {} \
+         files are not UTF-8; {:.1} MB/s",
+        folder.display(),
         counts.files,
         counts.lines,
         counts.changed,
         counts.touched,
         100.0 * counts.changed as f64 / counts.lines.max(1) as f64,
         counts.kept,
+        counts.unread,
         counts.bytes as f64 / 1e6 / counts.seconds.max(1e-9),
     );
 }

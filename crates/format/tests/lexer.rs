@@ -38,10 +38,13 @@ pub fn tokens_of(text: &str, language: Language) -> Vec<String> {
                 token.split('\n').map(|line| line.trim_matches(is_blank)).collect();
             token = lines.join("\n").trim_end().to_owned();
         }
-        // Two that stand close to each other may be one token.
+        // Two that stand close to each other may be one token, but not behind a `<` that may begin
+        // a template list: there `>` is a bracket, and `=` another token.
         let last = tokens.last().map_or("", String::as_str);
         let is_angle = last.starts_with('<') && token.starts_with(['<', '='])
-            || last.starts_with('>') && token.starts_with(['>', '=']);
+            || last.starts_with('>')
+                && token.starts_with(['>', '='])
+                && !may_close_list(&tokens[..tokens.len() - 1]);
         if end == at && is_angle {
             token.push('~');
         }
@@ -49,6 +52,11 @@ pub fn tokens_of(text: &str, language: Language) -> Vec<String> {
         (at, end, is_first) = (next, next, false);
     }
     tokens
+}
+
+fn may_close_list(before: &[String]) -> bool {
+    let ends_lists = |token: &&String| !matches!(token.as_str(), ";" | "{" | ":");
+    before.iter().rev().take_while(ends_lists).any(|token| token.starts_with('<'))
 }
 
 fn is_blank(letter: char) -> bool {

@@ -1,21 +1,19 @@
 //! Formatting changes blanks alone, and nothing the second time.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr
+)]
+
 mod cases;
 mod corpus;
+mod hostile;
 mod lexer;
 mod random;
 
-use std::process::ExitCode;
-
-use libtest_mimic::{Arguments, Trial};
-
-fn main() -> ExitCode {
-    let mut trials = cases::case_trials();
-    trials.extend([
-        Trial::test("ranges", cases::ranges),
-        Trial::test("typed", cases::typed),
-        Trial::test("others_code", corpus::others_code),
-        Trial::test("random_texts", random::random_texts),
-    ]);
-    libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
+fn main() -> std::process::ExitCode {
+    lamplight_testing::run_tests(&[cases::tests, corpus::tests, hostile::tests, random::tests])
 }

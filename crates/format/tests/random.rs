@@ -5,156 +5,21 @@ use lamplight_format::{
     Braces, Indent, Language, LineEnds, Margin, Options, apply_edits, format_edits, format_range,
     format_text, format_typed,
 };
-use lamplight_testing::random::Random;
-use libtest_mimic::Failed;
+use lamplight_testing::random::{Random, asked_number};
+use libtest_mimic::{Failed, Trial};
 use similar::TextDiff;
 
 use super::lexer::tokens_of;
 
-const WESL_WORDS: [&str; 74] = [
-    "fn",
-    "struct",
-    "let",
-    "var",
-    "const",
-    "if",
-    "else",
-    "for",
-    "while",
-    "loop",
-    "continuing",
-    "break",
-    "switch",
-    "case",
-    "default",
-    "return",
-    "discard",
-    "import",
-    "x",
-    "longer_name",
-    "vec4f",
-    "array",
-    "1",
-    "2.5",
-    "1e-3",
-    "0x1p+2",
-    ".5",
-    "7u",
-    "(",
-    ")",
-    "(",
-    ")",
-    "[",
-    "]",
-    "{",
-    "}",
-    "{",
-    "}",
-    ";",
-    ";",
-    ";",
-    ",",
-    ",",
-    ":",
-    "::",
-    ".",
-    "->",
-    "=",
-    "+=",
-    "==",
-    "<",
-    ">",
-    "<=",
-    ">=",
-    "<<",
-    "+",
-    "-",
-    "*",
-    "/",
-    "%",
-    "&",
-    "&&",
-    "|",
-    "||",
-    "^",
-    "!",
-    "~",
-    "++",
-    "--",
-    "@",
-    "@if(A)",
-    "@else",
-    "@group(0)",
-    "#{N}",
-];
-const GLSL_WORDS: [&str; 66] = [
-    "void",
-    "struct",
-    "float",
-    "const",
-    "if",
-    "else",
-    "for",
-    "while",
-    "do",
-    "break",
-    "switch",
-    "case",
-    "default",
-    "return",
-    "discard",
-    "layout",
-    "uniform",
-    "x",
-    "longer_name",
-    "vec4",
-    "MACRO",
-    "1",
-    "2.5",
-    "1e-3",
-    "0x1F",
-    ".5",
-    "7u",
-    "(",
-    ")",
-    "(",
-    ")",
-    "[",
-    "]",
-    "{",
-    "}",
-    "{",
-    "}",
-    ";",
-    ";",
-    ";",
-    ",",
-    ",",
-    ":",
-    "?",
-    ".",
-    "=",
-    "+=",
-    "==",
-    "<",
-    ">",
-    "<=",
-    ">=",
-    "<<",
-    "+",
-    "-",
-    "*",
-    "/",
-    "%",
-    "&",
-    "&&",
-    "||",
-    "^^",
-    "!",
-    "++",
-    "--",
-    "\"s\"",
-];
+/// What both languages have.
+const WORDS: &str = "struct const if else for while break switch case default return discard x \
+    longer_name été 1 2.5 1e-3 .5 7u ( ) ( ) [ ] { } { } ; ; ; , , : . = += == < > <= >= << + - \
+    * / % & && || ! ++ --";
+/// What WESL has besides.
+const WESL_WORDS: &str = "fn let var loop continuing import vec4f array 0x1p+2 :: -> | ^ ~ @ \
+    @if(A) @else @group(0) #{N}";
+/// What GLSL has besides.
+const GLSL_WORDS: &str = "void float do layout uniform vec4 MACRO 0x1F ? ^^ \"s\"";
 const DIRECTIVES: [&str; 8] = [
     "#if X",
     "#else",
@@ -167,18 +32,23 @@ const DIRECTIVES: [&str; 8] = [
 ];
 const COMMENTS: [&str; 5] =
     ["// one\n", "/* two */", "/* three\n     * four\n  */", "//\n", "/**/ "];
-const GAPS: [&str; 8] = [" ", " ", " ", "\n", "\n    ", "\n\n\n", "\t", "  "];
+const GAPS: [&str; 10] = [" ", " ", " ", "\n", "\n    ", "\n\n\n", "\t", "  ", "\r", "\u{2028}"];
 
-fn word_of(random: &mut Random, words: &[&'static str]) -> &'static str {
+pub fn tests() -> Vec<Trial> {
+    vec![Trial::test("random_texts", random_texts)]
+}
+
+fn word_of<'w>(random: &mut Random, words: &[&'w str]) -> &'w str {
     words[random.below(words.len())]
 }
 
 /// Tokens in any order.
 fn soup(random: &mut Random, language: Language) -> String {
-    let words: &[&'static str] = if language == Language::Wesl { &WESL_WORDS } else { &GLSL_WORDS };
+    let own = if language == Language::Wesl { WESL_WORDS } else { GLSL_WORDS };
+    let words: Vec<&str> = WORDS.split(' ').chain(own.split(' ')).collect();
     let mut text = String::new();
     for _ in 0..random.below(120) {
-        text += word_of(random, words);
+        text += word_of(random, &words);
         text += word_of(random, &GAPS);
         noise(random, &mut text, 12);
     }
@@ -366,7 +236,12 @@ fn some_options(random: &mut Random) -> Options {
 }
 
 /// What must hold for every text.
-fn check_text(text: &str, language: Language, options: &Options, at: usize) -> Result<(), String> {
+pub fn check_text(
+    text: &str,
+    language: Language,
+    options: &Options,
+    at: usize,
+) -> Result<(), String> {
     let mut sources = SourceSet::default();
     let id = sources.add("text", text.to_owned());
     let once = format_text(text, id, language, options).text;
@@ -418,12 +293,9 @@ fn shrink_text(text: &str, fails: impl Fn(&str) -> bool) -> String {
     pieces.concat()
 }
 
-pub fn random_texts() -> Result<(), Failed> {
-    let wanted = |name: &str, usual: u64| {
-        std::env::var(name).ok().and_then(|number| number.parse().ok()).unwrap_or(usual)
-    };
-    let first = wanted("LAMPLIGHT_FORMAT_SEED", 1);
-    for seed in first..first + wanted("LAMPLIGHT_FORMAT_PROGRAMS", 600) {
+fn random_texts() -> Result<(), Failed> {
+    let first = asked_number("LAMPLIGHT_FORMAT_SEED", 1);
+    for seed in first..first + asked_number("LAMPLIGHT_FORMAT_PROGRAMS", 600) {
         let mut random = Random(seed);
         let language = [Language::Wesl, Language::Glsl][random.below(2)];
         let is_soup = random.below(3) == 0;
@@ -432,7 +304,8 @@ pub fn random_texts() -> Result<(), Failed> {
             false => program(&mut random, language),
         };
         if random.below(4) == 0 {
-            text.truncate(random.below(text.len() + 1));
+            let length = random.below(text.len() + 1);
+            text.truncate(text.floor_char_boundary(length));
         }
         if random.below(5) == 0 {
             text = text.replace('\n', "\r\n");

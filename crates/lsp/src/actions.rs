@@ -158,7 +158,8 @@ fn feature_declaration(root: &Path, name: &str) -> Option<(String, Value)> {
     Some((place::file_address(&file), edit))
 }
 
-fn read_text(file: &Path) -> Option<String> {
+/// The text of a file on disk, if it is there and can be read.
+pub(super) fn read_text(file: &Path) -> Option<String> {
     let bytes =
         lamplight_files::input::read_file(file, lamplight_files::limits::FILE_BYTES as u64).ok()?;
     String::from_utf8(bytes).ok()

@@ -1,13 +1,12 @@
 //! Formatting of documents: whole ones, the statements that a selection touches, and the statement
 //! that a typed character ends. Edits are about blanks alone, so that cursors stay.
 
-use std::path::Path;
-
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_format::{Edit, Indent, Language, Options};
 use lamplight_lint as lint;
 use serde_json::{Value, json};
 
+use super::actions::read_text;
 use super::failure::RequestError;
 use super::place::{self, Lines};
 use super::{Document, LanguageServer};
@@ -70,8 +69,7 @@ fn formatting_of(
     let language = lint::language(&document.path).ok_or(RequestError::Parameter("textDocument"))?;
     let base = options_of_editor(parameters.get("options").unwrap_or(&Value::Null));
     let file = document.root.join(&document.path);
-    let found =
-        lamplight_format::options_for(&file, base, &mut SourceSet::default(), read_manifest);
+    let found = lamplight_format::options_for(&file, base, &mut SourceSet::default(), read_text);
     let wrong = |found: Vec<lamplight_diagnostic::Diagnostic>| {
         let message = found.first().map_or_else(String::new, |first| first.message.clone());
         RequestError::Refused(format!("the options of the formatter are wrong: {message}"))
@@ -89,9 +87,4 @@ fn options_of_editor(options: &Value) -> Options {
     };
     let ends = options.get("insertFinalNewline").and_then(Value::as_bool);
     Options { indent, final_newline: ends.unwrap_or(usual.final_newline), ..usual }
-}
-
-fn read_manifest(file: &Path) -> Option<String> {
-    let most = lamplight_files::limits::FILE_BYTES as u64;
-    String::from_utf8(lamplight_files::input::read_file(file, most).ok()?).ok()
 }

@@ -1,7 +1,8 @@
 //! Splits WGSL into tokens, with operators of several characters as one token, and finds the
-//! template lists ("Template Lists" in the specification).
+//! template lists.
 
 use lamplight_syntax::wesl::blank::{block_comment, is_blank, line_comment};
+use lamplight_syntax::wesl::{Piece, template_lists};
 use lamplight_syntax::words::{begins_word, number_end, word_end};
 
 use super::Place;
@@ -109,60 +110,18 @@ fn single_tokens(text: &str) -> Option<Vec<Token<'_>>> {
     Some(tokens)
 }
 
-/// Marks the brackets of template lists, by the algorithm of the specification.
+/// Marks the brackets of template lists.
 fn mark_templates(tokens: &mut [Token<'_>]) {
-    // The `<` that may begin a list, with the depth of other brackets there.
-    let mut pending: Vec<(usize, usize)> = Vec::new();
-    let mut depth = 0_usize;
-    let mut at = 0;
-    while at < tokens.len() {
-        let is = |offset: usize, mark: &str| {
-            tokens.get(at + offset).is_some_and(|token| {
-                token.text == mark && token.place.start == tokens[at].place.start + offset as u32
-            })
-        };
-        match tokens[at].text {
-            "<" if at > 0 && tokens[at - 1].kind == Kind::Word => match is(1, "<") || is(1, "=") {
-                true => at += 1,
-                false => pending.push((at, depth)),
-            },
-            ">" => match pending.last() {
-                Some((start, outer)) if *outer == depth => {
-                    let start = *start;
-                    tokens[start].kind = Kind::TemplateStart;
-                    tokens[at].kind = Kind::TemplateEnd;
-                    pending.pop();
-                }
-                _ if is(1, "=") => at += 1,
-                _ => {}
-            },
-            "(" | "[" => depth += 1,
-            ")" | "]" => {
-                drop_pending(&mut pending, depth);
-                depth = depth.saturating_sub(1);
-            }
-            "!" if is(1, "=") => at += 1,
-            "=" if is(1, "=") => at += 1,
-            "=" | ";" | "{" | ":" => {
-                depth = 0;
-                pending.clear();
-            }
-            "&" if is(1, "&") => {
-                drop_pending(&mut pending, depth);
-                at += 1;
-            }
-            "|" if is(1, "|") => {
-                drop_pending(&mut pending, depth);
-                at += 1;
-            }
-            _ => {}
-        }
-        at += 1;
-    }
-}
-
-fn drop_pending(pending: &mut Vec<(usize, usize)>, depth: usize) {
-    while pending.last().is_some_and(|(_, outer)| *outer >= depth) {
-        pending.pop();
+    let pieces: Vec<Piece<'_>> = tokens
+        .iter()
+        .map(|token| Piece {
+            text: token.text,
+            start: token.place.start,
+            is_word: token.kind == Kind::Word,
+        })
+        .collect();
+    for (open, close) in template_lists(&pieces) {
+        tokens[open].kind = Kind::TemplateStart;
+        tokens[close].kind = Kind::TemplateEnd;
     }
 }

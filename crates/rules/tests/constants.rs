@@ -2,8 +2,8 @@
 
 use libtest_mimic::{Failed, Trial};
 
-use crate::random::Random;
-use crate::verdicts::{accepts, number, tint};
+use crate::random::{Random, asked_number};
+use crate::verdicts::{accepts, tint};
 
 /// How many texts Tint is asked about, and how many calls each has.
 const TEXTS: u64 = 20;
@@ -18,9 +18,9 @@ pub fn tests() -> Vec<Trial> {
 
 /// Every call is folded, and Tint finds the same value for it.
 fn values() -> Result<(), Failed> {
-    let seed = number("LAMPLIGHT_RULES_SEED", 0);
+    let seed = asked_number("LAMPLIGHT_RULES_SEED", 0);
     let folder = tempfile::tempdir()?;
-    for seed in seed..seed + number("LAMPLIGHT_RULES_PROGRAMS", TEXTS) {
+    for seed in seed..seed + asked_number("LAMPLIGHT_RULES_PROGRAMS", TEXTS) {
         let mut random = Random(seed);
         let calls: Vec<String> = (0..CALLS).map(|_| call(&mut random)).collect();
         let declared = |(at, call): (usize, &String)| format!("const x{at} = {call};\n");

@@ -11,6 +11,7 @@ use libtest_mimic::{Failed, Trial};
 
 use crate::errors;
 use crate::programs::program;
+use crate::random::asked_number;
 
 const RECORDED: &str = include_str!("verdicts.txt");
 
@@ -42,15 +43,11 @@ fn compare(seed: u64, is_accepted: bool) -> Result<(), Failed> {
     }
 }
 
-pub fn number(name: &str, usual: u64) -> u64 {
-    std::env::var(name).map_or(usual, |text| text.parse().expect("a number"))
-}
-
 fn verdicts_of_tint() -> Result<(), Failed> {
-    let seed = number("LAMPLIGHT_RULES_SEED", 0);
+    let seed = asked_number("LAMPLIGHT_RULES_SEED", 0);
     let folder = tempfile::tempdir()?;
     let mut recorded = String::new();
-    for seed in seed..seed + number("LAMPLIGHT_RULES_PROGRAMS", ASKED) {
+    for seed in seed..seed + asked_number("LAMPLIGHT_RULES_PROGRAMS", ASKED) {
         let file = folder.path().join(format!("{seed}.wgsl"));
         std::fs::write(&file, program(seed))?;
         let is_accepted = accepts(&file)?;

@@ -1,5 +1,13 @@
 //! Random numbers that depend on a seed only, the same on every machine.
 
+/// A number that a test takes from the environment, such as its first seed.
+///
+/// # Panics
+/// If the variable is there, and no number.
+pub fn asked_number(name: &str, usual: u64) -> u64 {
+    std::env::var(name).map_or(usual, |text| text.parse().expect("a number"))
+}
+
 /// SplitMix64 (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
 #[derive(Debug, Clone)]
 pub struct Random(pub u64);

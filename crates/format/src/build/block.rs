@@ -1,6 +1,7 @@
 //! Statements in a row, blocks in braces, and labels.
 
 use lamplight_bundle::Language;
+use lamplight_syntax::wesl::blank::is_line_break;
 
 use super::{Builder, ConditionStyle};
 use crate::op::{Break, GroupKind, Op, Place};
@@ -218,7 +219,7 @@ impl Builder<'_> {
                     && !(token.kind == Kind::Word && self.is_control(at))
             })
             && !self.text[self.tokens[open].start as usize..self.tokens[close].end as usize]
-                .contains('\n')
+                .contains(is_line_break)
     }
 
     /// Lays out a block that may stand in one line. `outer` says where its last brace begins its

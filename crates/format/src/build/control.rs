@@ -1,6 +1,7 @@
 //! Statements by what they begin with: loops, choices, labels, functions, and all others.
 
 use lamplight_bundle::Language;
+use lamplight_syntax::wesl::blank::is_line_break;
 
 use super::Builder;
 use super::block::Extent;
@@ -258,9 +259,12 @@ impl Builder<'_> {
                 && !token.begins_line()
                 && !self.is_mark(index, "@")
                 && !(self.is_word(index) && self.is_control(index));
+            if !is_simple {
+                break;
+            }
             let Extent::Semicolon(at) = self.extent(index, end) else { break };
-            let bytes = self.tokens[index].start as usize..self.tokens[at].end as usize;
-            if !is_simple || self.text[bytes].contains('\n') {
+            let bytes = token.start as usize..self.tokens[at].end as usize;
+            if self.text[bytes].contains(is_line_break) {
                 break;
             }
             index = at + 1;

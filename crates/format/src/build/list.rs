@@ -60,9 +60,9 @@ impl Builder<'_> {
     }
 
     /// Lays out an element with its separator and the comments behind it; the index behind them.
-    fn item(&mut self, start: usize, end: usize, close: usize) -> usize {
+    fn item(&mut self, mut start: usize, end: usize, close: usize) -> usize {
         self.last = None;
-        if self.tokens[start].is_comment() || self.tokens[start].begins_line() {
+        while self.tokens[start].is_comment() || self.tokens[start].begins_line() {
             // A line of its own, or a comment before an element.
             self.token(start);
             let next = start + 1;
@@ -73,7 +73,8 @@ impl Builder<'_> {
                 return next;
             }
             self.push(Op::Space);
-            return self.item(next, end, close);
+            self.last = None;
+            start = next;
         }
         self.element(start, end);
         let mut next = end;

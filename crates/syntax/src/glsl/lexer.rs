@@ -139,14 +139,17 @@ fn splice_length(bytes: &[u8], at: usize) -> usize {
     }
 }
 
-fn line_comment_end(bytes: &[u8], mut at: usize) -> usize {
+/// The end of the line comment that begins at a byte, without its line break. Backslashes at the
+/// ends of lines continue it.
+pub fn line_comment_end(bytes: &[u8], mut at: usize) -> usize {
     while at < bytes.len() && bytes[at] != b'\n' {
         at += splice_length(bytes, at).max(1);
     }
     at
 }
 
-fn block_comment_end(bytes: &[u8], at: usize) -> Option<usize> {
+/// The end of the block comment that begins at a byte, if it is closed.
+pub fn block_comment_end(bytes: &[u8], at: usize) -> Option<usize> {
     bytes[at + 2..].windows(2).position(|pair| pair == b"*/").map(|offset| at + 2 + offset + 2)
 }
 

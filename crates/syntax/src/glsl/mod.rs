@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 pub use lexer::{Symbol, Symbols, known};
 pub use lexer::{Token, TokenKind, single_token, tokenize};
+pub use lexer::{block_comment_end, line_comment_end};
 
 use lamplight_diagnostic::source::{LIMITS, SourceId, SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, codes};

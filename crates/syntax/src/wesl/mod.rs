@@ -11,6 +11,7 @@ mod body;
 mod condition;
 mod item;
 mod module;
+mod template;
 mod token;
 
 pub use condition::{Attributes, Chain, read_attributes};
@@ -20,6 +21,7 @@ pub use module::{
     ExpressionId, Guard, Import, Item, ItemKind, LocalUse, Module, Origin, Path, PathParts,
     PlacedModule, UsedName, Visibility, Wildcard,
 };
+pub use template::{Piece, template_lists};
 pub use token::{Name, Names, Token, TokenKind, Tokens, is_keyword, is_path_name, keywords};
 
 use std::sync::Arc;
