@@ -12,14 +12,15 @@ export type Token = { kind?: Kind; text: string };
 
 type Rule = [RegExp, Kind | undefined];
 
-/** One of some words, written with blanks between them. */
-const words = (text: string): RegExp => new RegExp(`(?:${text.trim().replace(/\s+/g, "|")})\\b`, "y");
+/** One of some words, written with blanks between them. Names have letters of all scripts. */
+const words = (text: string, before = ""): RegExp =>
+    new RegExp(`(?:${text.trim().replace(/\s+/g, "|")})(?!\\p{XID_Continue})${before}`, "yu");
 
 const LINE_COMMENT: Rule = [/\/\/.*/y, "comment"];
 const NUMBER: Rule = [/(?:0[xX][\da-fA-F.]+(?:[pP][+-]?\d+)?|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)[a-zA-Z]*/y, "number"];
 const STRING: Rule = [/"(?:[^"\\]|\\.)*"?/y, "string"];
-const CALL: Rule = [/[A-Za-z_]\w*(?=\s*\()/y, "function"];
-const WORD: Rule = [/[A-Za-z_]\w*/y, undefined];
+const CALL: Rule = [/[\p{XID_Start}_]\p{XID_Continue}*(?=\s*\()/yu, "function"];
+const WORD: Rule = [/[\p{XID_Start}_]\p{XID_Continue}*/yu, undefined];
 const BLANK: Rule = [/[^\S\n]+/y, undefined];
 
 const WGSL: Rule[] = [
@@ -27,7 +28,7 @@ const WGSL: Rule[] = [
     [words(`alias as break case const const_assert continue continuing default diagnostic discard else enable false fn for if
         import let loop override package requires return struct super switch true var while`), "keyword"],
     [words("bool i32 u32 f32 f16 vec[234][iufh]? mat[234]x[234][fh]? array atomic ptr sampler sampler_comparison texture_\\w+ binding_array"), "type"],
-    [words("function private workgroup uniform storage read write read_write(?=\\s*[,>])"), "keyword"],
+    [words("function private workgroup uniform storage read write read_write", "(?=\\s*[,>])"), "keyword"],
     CALL, WORD, BLANK,
 ];
 
@@ -41,7 +42,7 @@ const C_KEYWORDS = `attribute break buffer case cbuffer centroid const constant 
     template thread threadgroup true typedef uniform using varying vertex volatile while writeonly`;
 
 const C_LIKE: Rule[] = [
-    LINE_COMMENT, [/#\s*\w+/y, "attribute"], [/\[\[.*?\]\]/y, "attribute"], NUMBER, STRING,
+    LINE_COMMENT, [/#\s*\w+/y, "attribute"], [/\[\[\s*\w[^\]]*\]\]/y, "attribute"], NUMBER, STRING,
     [words(C_KEYWORDS), "keyword"], [words(C_TYPES), "type"], CALL, WORD, BLANK,
 ];
 

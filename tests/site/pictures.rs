@@ -40,7 +40,9 @@ pub fn pictures() -> Outcome {
         let mut page = opened.page(address)?;
         for preset in PRESETS {
             let canvas = format!("document.querySelector('canvas[data-preset={preset}]')");
-            page.evaluate(&format!("{canvas}.scrollIntoView({{ block: 'center' }})"), PATIENCE)?;
+            // The canvas is hidden until it is drawn; its card is there.
+            let card = format!("{canvas}.closest('article')");
+            page.evaluate(&format!("{card}.scrollIntoView({{ block: 'center' }})"), PATIENCE)?;
             wait(&page, &format!("{canvas}?.dataset.drawn === '1'"))?;
             let pixels = text(&page, &format!("{canvas}.toDataURL('image/png')"))?;
             let name = format!("{preset} at {address}");

@@ -52,6 +52,13 @@ fn helped() -> Outcome {
     let offered = "[...document.querySelectorAll('.cm-tooltip-autocomplete li')].map((it) => it.textContent).join()";
     wait(&page, &format!("{offered}.includes('f_schlick')"))?;
     wait(&page, "document.querySelector('.sketch.stale') !== null")?;
+    // A list that has just come, or waits for a newer one, takes no key: nobody can have read it.
+    let ready = "document.querySelector('.cm-tooltip-autocomplete:not(.cm-tooltip-autocomplete-disabled) li[aria-selected=true]')?.textContent.includes('f_schlick')";
+    let still = format!(
+        "(async () => {{ if (!({ready})) return false;
+            await new Promise((done) => setTimeout(done, 200)); return {ready} === true; }})()"
+    );
+    wait(&page, &still)?;
     press(&page, "Enter")?;
     wait(&page, &format!("{content}.includes('import lamplight::brdf::specular::f_schlick;')"))?;
     page.evaluate(&typed("let q =", "(vec3f(0.04), 1.0, 0.5);"), PATIENCE)?;

@@ -9,6 +9,7 @@ const PICTURE: &str = "document.querySelector('canvas').toDataURL()";
 
 /// Whether the last picture has come, with smooth edges: it follows a quick one.
 const SMOOTH: &str = "document.querySelector('canvas')?.dataset.smooth !== undefined
+    && document.querySelector('canvas').dataset.coarse === undefined
     && document.querySelector('canvas').dataset.smooth === document.querySelector('canvas').dataset.drawn";
 
 /// Whether there is another picture. A slow device shows a coarse one first, which does not count.

@@ -116,6 +116,7 @@ export async function page(into: HTMLElement) {
     async function draw(withControls: boolean, isOld: () => boolean) {
         const start = performance.now();
         const requested = request();
+        delete canvas.dataset.smooth;
         try {
             const take = (factor: number) => picture({ ...requested, width: requested.width / factor, height: requested.height / factor });
             await screen.show(take, isOld);
@@ -171,7 +172,9 @@ export async function page(into: HTMLElement) {
             h("p", {}, "From ", h("code", {}, other.key || "default"), " to ", h("code", {}, point!.key || "default")),
             ...names.map((title) => differences(of(before, title), of(after, title), title)));
     }
-    const update = latest(async (isOld) => {
+    const update = latest(async (isAsked) => {
+        // A page that was left leaves the device to the next one.
+        const isOld = () => isAsked() || !into.isConnected;
         const now = wanted;
         wanted = { texts: false, controls: false };
         try {
@@ -202,6 +205,7 @@ export async function page(into: HTMLElement) {
             status.textContent = point.broken.join(" ") || point.diagnostics[0]?.message || "";
             return;
         }
+        if (!into.isConnected) return;
         await draw(now.controls, isOld);
         if (isOld()) wanted.texts ||= now.texts;
         else if (now.texts) await write();

@@ -74,9 +74,11 @@ export class Sketch {
     /** Seconds, and whether they pass. */
     #time = 1;
     #isPlaying = false;
-    /** Whether somebody stopped the time, or it began by itself once. */
-    #isBegun = false;
-    #play = h("button", { type: "button", hidden: true, onclick: () => this.#setPlaying(!this.#isPlaying) });
+    /** How often time began to pass. */
+    #turns = 0;
+    /** Whether somebody wants it to pass; nothing if nobody chose. */
+    #isWanted?: boolean;
+    #play = h("button", { type: "button", hidden: true, onclick: () => this.#choosePlaying(!this.#isPlaying) });
 
     /** `changed` is called when somebody changed the look. A text that somebody types has inputs to
      * choose, and is given up if it takes long. Where there is room for what a pixel's run gives, `shown`
@@ -126,7 +128,7 @@ export class Sketch {
 
     /** The text has mistakes: the picture is that of an older one, and looks like it. */
     suspend(why: string) {
-        this.#setPlaying(false, false);
+        this.#setPlaying(false);
         this.element.classList.add("stale");
         this.#pixel?.suspend(why);
     }
@@ -138,22 +140,24 @@ export class Sketch {
         return { ...rest, ...own, turn, lamp, shader: this.#shader!, size: SIZE, samples: this.#isPlaying ? 1 : 4 };
     }
 
-    /** Lets time pass, or stops it. `isBegun` says whether it stays so when the text is right again. */
-    #setPlaying(isPlaying: boolean, isBegun = true) {
-        if (isBegun) this.#isBegun = true;
-        const isChanged = isPlaying !== this.#isPlaying;
+    /** Somebody lets time pass, or stops it: so it stays, also after mistakes. */
+    #choosePlaying(isPlaying: boolean) {
+        this.#isWanted = isPlaying;
+        this.#setPlaying(isPlaying);
+        // What stands still has smooth edges.
+        if (!isPlaying) this.#run();
+    }
+
+    #setPlaying(isPlaying: boolean) {
+        const isBegun = isPlaying && !this.#isPlaying;
         this.#isPlaying = isPlaying;
         this.#play.textContent = isPlaying ? "Stop the time" : "Let time pass";
-        if (!isChanged) return;
-        this.element.dataset.playing = isPlaying ? "1" : undefined;
-        if (!isPlaying) {
-            delete this.element.dataset.playing;
-            if (isBegun) this.#run();
-            return;
-        }
+        if (!isBegun) return;
+        const turn = ++this.#turns;
         let last = performance.now();
         const step = async (now: number) => {
-            if (!this.#isPlaying || !this.element.isConnected) return;
+            // It may have been stopped, and begun again, while a picture was drawn.
+            if (!this.#isPlaying || turn !== this.#turns || !this.element.isConnected) return;
             this.#time += Math.max(0, now - last) / 1000;
             last = now;
             // Nobody sees a picture that is not in view.
@@ -163,13 +167,11 @@ export class Sketch {
         requestAnimationFrame(step);
     }
 
-    /** Time begins to pass by itself, unless somebody prefers that nothing moves. */
+    /** Time passes by itself, unless somebody stopped it or prefers that nothing moves. */
     #offerTime(hasTime: boolean) {
         this.#play.hidden = !hasTime;
-        if (!hasTime) return this.#setPlaying(false, false);
         const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
-        if (!this.#isBegun) this.#setPlaying(!isStill);
-        else this.#setPlaying(this.#isPlaying);
+        this.#setPlaying(hasTime && (this.#isWanted ?? !isStill));
     }
 
     get #look(): Look {
@@ -248,7 +250,7 @@ export class Sketch {
             this.#status.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms${plain ? `. ${plain}` : ""}`;
             this.#pixel?.renew();
         } catch (error) {
-            this.#setPlaying(false, false);
+            this.#setPlaying(false);
             this.element.classList.add("stale");
             this.#status.textContent = reason(error);
             if (error instanceof RefusedText) this.#refused(error);
