@@ -6,8 +6,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use lamplight::bundle::{Bundle, Found, Native, Target};
+use lamplight::bundle::{Bundle, Found, Native, Target, blob_files};
 use lamplight::emit::spirv::{instructions, op, words};
+use lamplight::validators::{self, Extent, Tint, verdict};
 use libtest_mimic::{Failed, Trial};
 
 use crate::validators::{Package, expect};
@@ -99,12 +100,13 @@ fn counted(module: &[u8], wanted: &[u16]) -> usize {
 
 /// Every form has the same bindings, locations and constants, the validators and the comparison with
 /// the reflection accept it as a directory and as a file, and only the first has names. What is
-/// optimised is smaller. Tint is not asked: its package comes from npm, and WGSL has no forms.
+/// optimised is smaller. Tint is not asked: its package comes from npm.
 fn contents() -> Outcome {
     let package = package()?;
     let mut outputs = BTreeMap::new();
     for form in FORMS {
-        generate(&package, form, &["--validate", "all", "--target", "spirv"])?;
+        generate(&package, form, &[])?;
+        validated(&package.path(form))?;
         let file = format!("{form}.lamplight");
         expect(&package.run(&["bundle", "pack", form, "-o", &file])?, 0, &[])?;
         for place in [form, &file] {
@@ -142,6 +144,20 @@ fn contents() -> Outcome {
     )?;
     let sizes = [names, stripped, optimised].map(|found| found.bytes.len());
     ensure(sizes[0] > sizes[1] && sizes[1] > sizes[2], format!("sizes {sizes:?}"))
+}
+
+/// The validators but Tint, and the comparison with the reflection, accept all outputs of a bundle.
+fn validated(bundle: &Path) -> Outcome {
+    let tint = Tint::at(bundle.join("no-tint"));
+    let outputs = validators::outputs(blob_files(bundle)?)?;
+    let found = verdict(outputs, Extent::All, None, &tint, &|_, _| ())?;
+    ensure(found.refusals.is_empty(), format!("{:?}", found.refusals))?;
+    for target in &found.validation.targets {
+        let what = format!("{}: {} of {}", target.target, target.now, target.outputs);
+        ensure(target.outputs > 0 && target.now == target.outputs, what)?;
+    }
+    let missing = found.validation.missing();
+    ensure(missing.iter().all(|one| one.contains("Tint")), format!("{missing:?}"))
 }
 
 fn ensure(holds: bool, message: impl Into<String>) -> Outcome {

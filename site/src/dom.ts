@@ -120,9 +120,7 @@ function hashRoute(hash: string): Route | undefined {
     if (!hash.startsWith("#/")) return undefined;
     const [way, query] = hash.slice(2).split("?");
     const [page, ...path] = way.split("/");
-    // The first page has no name, and nothing below it.
-    const name = page || (path.length ? decoded(path.join("/")) : "home");
-    return { page: name, path: page ? decoded(path.join("/")) : "", query: new URLSearchParams(query) };
+    return { page: page || "home", path: decoded(path.join("/")), query: new URLSearchParams(query) };
 }
 
 /** The page whose file an address is of. */

@@ -26,9 +26,10 @@ const missing = (why: string): typeof PAGES[string] => ({
     }),
 });
 
-/** The page of that name. */
-function named(page: string): typeof PAGES[string] {
+/** The page of that name. Nothing is below the first one. */
+function named(page: string, path: string): typeof PAGES[string] {
     if (location.hash.length > LONGEST) return missing(`The address has more than ${LONGEST.toLocaleString("en")} characters.`);
+    if (page === "home" && path) return missing(`The site has no page ${repeated(path)}.`);
     // A plain object has names that are none of its pages, such as `constructor`.
     return Object.hasOwn(PAGES, page) ? PAGES[page] : missing(`The site has no page ${repeated(page)}.`);
 }
@@ -59,8 +60,8 @@ function replaceMain(into: HTMLElement, isFirst: boolean) {
 async function open() {
     const now = ++opened;
     countPage();
-    const { page } = route();
-    const known = named(page);
+    const { page, path } = route();
+    const known = named(page, path);
     leave?.();
     leave = undefined;
     // The file of a page has a better title than its kind.

@@ -156,7 +156,8 @@ pub fn read_options(
     source: SourceId,
     base: Options,
 ) -> Result<Option<Options>, Diagnostics> {
-    let document = DeTable::parse(text).map_err(|error| vec![syntax_error(&error, source)])?;
+    let document =
+        DeTable::parse(text).map_err(|error| vec![syntax_error(&error, source, text.len())])?;
     let Some(found) = document.get_ref().get(TABLE) else { return Ok(None) };
     let table = Place { source, key: TABLE, value: found };
     let DeValue::Table(entries) = found.get_ref() else {
@@ -170,8 +171,9 @@ pub fn read_options(
     if errors.is_empty() { Ok(Some(options)) } else { Err(errors) }
 }
 
-fn syntax_error(error: &toml::de::Error, source: SourceId) -> Diagnostic {
-    let span = Span::new(source, error.span().unwrap_or(0..0));
+fn syntax_error(error: &toml::de::Error, source: SourceId, length: usize) -> Diagnostic {
+    let range = error.span().unwrap_or(0..0);
+    let span = Span::new(source, range.start.min(length)..range.end.min(length));
     let message = error.message().lines().collect::<Vec<_>>().join("; ");
     Diagnostic::error(codes::MANIFEST_SYNTAX, message).at(span, "")
 }

@@ -1,5 +1,5 @@
-//! Texts that nobody writes: as deep as brackets may nest, and so long that a step which looks at
-//! all of the rest again would take minutes.
+//! Texts that nobody writes: as deep as brackets may nest, and with thousands of the same. None ends
+//! the process, and each holds what every text holds.
 
 use libtest_mimic::{Failed, Trial};
 

@@ -1,7 +1,8 @@
-//! A lexer that shares no code with the formatter, to compare texts before and after: all but
-//! blanks must be the same.
+//! A lexer to compare texts before and after: all but blanks must be the same. It shares no code with
+//! the formatter but the algorithm of template lists, which verdicts of Tint test in `rules`.
 
 use lamplight_format::Language;
+use lamplight_syntax::wesl::{Piece, template_lists};
 
 /// Operators of GLSL, longest first.
 const GLSL: [&str; 22] = [
@@ -19,9 +20,9 @@ const WESL: [&str; 16] = [
 pub fn tokens_of(text: &str, language: Language) -> Vec<String> {
     let text = text.replace("\r\n", "\n").replace('\r', "\n");
     let letters: Vec<char> = text.trim_start_matches('\u{feff}').chars().collect();
-    let (mut tokens, mut at, mut is_first) = (Vec::new(), 0, true);
-    // Where the last token ended.
-    let mut end = usize::MAX;
+    // Each with its first letter.
+    let mut tokens: Vec<(usize, String)> = Vec::new();
+    let (mut at, mut is_first) = (0, true);
     while at < letters.len() {
         if is_blank(letters[at]) {
             is_first |= is_break(letters[at]);
@@ -30,33 +31,54 @@ pub fn tokens_of(text: &str, language: Language) -> Vec<String> {
         }
         let next = token_end(&letters, at, language, is_first);
         let mut token: String = letters[at..next].iter().collect();
-        if token.starts_with("//")
-            || token.starts_with("/*")
-            || (is_first && token.starts_with('#'))
-        {
+        if is_comment(&token) || (is_first && token.starts_with('#')) {
             let lines: Vec<&str> =
                 token.split('\n').map(|line| line.trim_matches(is_blank)).collect();
             token = lines.join("\n").trim_end().to_owned();
         }
-        // Two that stand close to each other may be one token, but not behind a `<` that may begin
-        // a template list: there `>` is a bracket, and `=` another token.
-        let last = tokens.last().map_or("", String::as_str);
-        let is_angle = last.starts_with('<') && token.starts_with(['<', '='])
-            || last.starts_with('>')
-                && token.starts_with(['>', '='])
-                && !may_close_list(&tokens[..tokens.len() - 1]);
-        if end == at && is_angle {
-            token.push('~');
-        }
-        tokens.push(token);
-        (at, end, is_first) = (next, next, false);
+        tokens.push((at, token));
+        (at, is_first) = (next, false);
+    }
+    let joined = joined_angles(&tokens, language);
+    let mut tokens: Vec<String> = tokens.into_iter().map(|(_, token)| token).collect();
+    for at in joined {
+        tokens[at].push('~');
     }
     tokens
 }
 
-fn may_close_list(before: &[String]) -> bool {
-    let ends_lists = |token: &&String| !matches!(token.as_str(), ";" | "{" | ":");
-    before.iter().rev().take_while(ends_lists).any(|token| token.starts_with('<'))
+/// Whether a token is a comment.
+fn is_comment(token: &str) -> bool {
+    token.starts_with("//") || token.starts_with("/*")
+}
+
+/// The tokens that may be one with the token before them, since nothing stands between: `<=` and the
+/// like. In WGSL, a `>` that closes a template list is one for itself.
+fn joined_angles(tokens: &[(usize, String)], language: Language) -> Vec<usize> {
+    let closers = match language {
+        Language::Wesl => closers_of(tokens),
+        Language::Glsl => Vec::new(),
+    };
+    let is_joined = |at: &usize| {
+        let ((start, last), (next, token)) = (&tokens[at - 1], &tokens[*at]);
+        let is_angle = last.starts_with('<') && token.starts_with(['<', '='])
+            || last.starts_with('>') && token.starts_with(['>', '=']);
+        is_angle && start + last.len() == *next && !closers.contains(&(at - 1))
+    };
+    (1..tokens.len()).filter(is_joined).collect()
+}
+
+/// The tokens that close a template list.
+fn closers_of(tokens: &[(usize, String)]) -> Vec<usize> {
+    let is_code = |at: &usize| !is_comment(&tokens[*at].1) && !tokens[*at].1.starts_with('#');
+    let code: Vec<usize> = (0..tokens.len()).filter(is_code).collect();
+    let is_word = |token: &str| token.starts_with(|it: char| it.is_alphabetic() || it == '_');
+    let piece = |at: &usize| {
+        let (start, token) = &tokens[*at];
+        Piece { text: token, start: *start as u32, is_word: is_word(token) }
+    };
+    let pieces: Vec<Piece<'_>> = code.iter().map(piece).collect();
+    template_lists(&pieces).into_iter().map(|(_, close)| code[close]).collect()
 }
 
 fn is_blank(letter: char) -> bool {
