@@ -17,7 +17,7 @@ use tempfile::TempDir;
 use super::Outcome;
 use texts::{FILES, MANIFEST, MANIFESTS, PIECES, file_name, source};
 
-const EDITS: usize = 60;
+const EDITS: usize = 80;
 const QUESTIONS: &[&str] = &[
     "textDocument/hover",
     "textDocument/definition",

@@ -52,7 +52,8 @@ pub fn pair_brackets(text: &str, tokens: Vec<Token>, language: Language) -> Pair
         let after = if trouble == Trouble::Open { outermost } else { bracket };
         let is_lost = pairing.unpaired.len() >= OPEN_ITEMS;
         let end = if is_lost { tokens.len() } else { pairing.next_item(&tokens, after + 1) };
-        let Token { start: from, end: to, .. } = tokens[bracket];
+        let (trouble, blamed) = pairing.blamed(&tokens, trouble, bracket);
+        let Token { start: from, end: to, .. } = tokens[blamed];
         pairing.unpaired.push(Unpaired { trouble, start: from, end: to });
         pairing.open.clear();
         kept[start..end].fill(true);
@@ -97,6 +98,19 @@ impl Pairing<'_> {
             }
         }
         self.open.last().map(|index| (Trouble::Open, *index))
+    }
+
+    /// The bracket to show for a trouble. If a bracket closes one further out, what is open within was
+    /// forgotten: `{ (1; }`.
+    fn blamed(&self, tokens: &[Token], trouble: Trouble, bracket: usize) -> (Trouble, usize) {
+        let closed = bracket_of(&tokens[bracket], self.text).map(|(shape, _)| (shape, true));
+        let is_closed = |opener: &usize| bracket_of(&tokens[*opener], self.text) == closed;
+        match self.open.last() {
+            Some(inner) if trouble == Trouble::Closer && self.open.iter().any(is_closed) => {
+                (Trouble::Open, *inner)
+            }
+            _ => (trouble, bracket),
+        }
     }
 
     /// The first token of the item that a token outside of brackets belongs to.

@@ -1,5 +1,6 @@
 //! The test binaries of the workspace: found by their files, built together, run one after the other.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -130,10 +131,14 @@ fn options() -> Vec<String> {
     options
 }
 
-/// Arguments of cargo that run the examples of the documentation.
-pub fn documentation_command() -> Vec<String> {
-    let command = ["test", "--doc", "--package", "lamplight"].map(str::to_owned);
-    command.into_iter().chain(options()).collect()
+/// Arguments of cargo that run the examples of the documentation of the packages that some binaries are
+/// of. For other packages, cargo would choose other features of dependencies, and build most of them
+/// again.
+pub fn documentation_command(binaries: &[TestBinary]) -> Vec<String> {
+    let packages: BTreeSet<&str> = binaries.iter().map(|binary| binary.package.as_str()).collect();
+    let packages = packages.into_iter().flat_map(|package| ["--package", package]);
+    let command = ["test", "--doc"].into_iter().chain(packages).map(str::to_owned);
+    command.chain(options()).collect()
 }
 
 /// Arguments of cargo that run the tests of some binaries as they are built for a whole run.

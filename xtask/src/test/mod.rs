@@ -46,7 +46,7 @@ fn everything(chosen: &[binaries::TestBinary], options: &[String]) -> CommandRes
         (site.join(), paths)
     });
     site.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-    let examples = binaries::documentation_command();
+    let examples = binaries::documentation_command(chosen);
     let examples: Vec<&str> = examples.iter().map(String::as_str).collect();
     process::cargo_with(&examples, &[], &incremental)?;
     binaries::run_all(&paths?, options)
