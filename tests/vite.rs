@@ -19,7 +19,8 @@ const LAMPLIGHT: &str = env!("CARGO_BIN_EXE_lamplight");
 const VERSIONS: [&str; 2] = ["7", "8"];
 
 pub fn tests() -> Vec<Trial> {
-    const TESTS: [(&str, fn(&str) -> Outcome); 4] = [
+    type TestOfVersion = fn(&str) -> Outcome;
+    const TESTS: [(&str, TestOfVersion); 4] = [
         ("edits_arrive", edits_arrive),
         ("build_has_what_is_named", build_has_what_is_named),
         ("types_refuse_wrong_keys", types_refuse_wrong_keys),

@@ -45,8 +45,7 @@ pub fn pair_brackets(text: &str, tokens: Vec<Token>, language: Language) -> Pair
     let mut pairing = Pairing { text, language, open: Vec::new(), unpaired: Vec::new() };
     let mut kept = vec![false; tokens.len()];
     let (mut at, mut first) = (0, 0);
-    loop {
-        let Some((trouble, bracket)) = pairing.advance(&mut tokens, &mut at) else { break };
+    while let Some((trouble, bracket)) = pairing.advance(&mut tokens, &mut at) {
         let outermost = pairing.open.first().copied().unwrap_or(bracket);
         let start = pairing.item_start(&tokens, outermost, first);
         let after = if trouble == Trouble::Open { outermost } else { bracket };

@@ -234,7 +234,7 @@ impl Printer<'_> {
     fn needs_break(&self, index: usize) -> bool {
         let next = (usize::from(self.top().element) + 1) * self.options.indent.columns();
         let mut left = self.options.width as isize - self.column() as isize - 1;
-        if next >= self.column() + 1 {
+        if next > self.column() {
             return false;
         }
         for op in &self.ops[index + 1..] {

@@ -8,7 +8,7 @@ use super::LanguageServer;
 use super::failure::RequestError;
 use super::package::{OpenedPackage, PackageModules, WeslSymbol};
 use super::place::{Lines, path_of_address};
-use super::report::address_of;
+use super::places::address_of;
 use lamplight_compose::resolve::wesl::ModuleNode;
 use lamplight_diagnostic::Diagnostic;
 use lamplight_diagnostic::source::{Disk, Files, SourceId, Span};

@@ -22,6 +22,7 @@ mod members;
 mod navigate;
 mod package;
 mod place;
+mod places;
 mod publish;
 mod report;
 pub mod wire;

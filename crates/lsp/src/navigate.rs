@@ -10,9 +10,10 @@ use super::dependents::{PackageSymbol, SharedSymbol};
 use super::members::members_at;
 use super::package::{PackageModules, WeslSymbol};
 use super::place::Lines;
+use super::places::Places;
 use super::{LanguageServer, glsl, report};
 use lamplight_compose::project;
-use lamplight_diagnostic::source::Span;
+use lamplight_diagnostic::source::{SourceSet, Span};
 use lamplight_syntax::wesl::{ItemKind, Name, is_keyword, is_path_name};
 use lamplight_syntax::words::is_word;
 
@@ -46,10 +47,9 @@ impl LanguageServer {
         Ok(node.map(|node| (modules, node, byte)))
     }
 
-    fn location(&self, modules: &PackageModules, span: Span) -> Option<Value> {
-        let uri = report::address_of(&modules.sources, span.source, &*self.library)?;
-        let lines = Lines::new(&modules.sources.get(span.source).text);
-        Some(json!({ "uri": uri, "range": lines.range(span.range()) }))
+    /// The places of a package's texts.
+    pub(super) fn places<'s>(&'s self, sources: &'s SourceSet) -> Places<'s> {
+        Places::new(sources, &*self.library)
     }
 }
 
@@ -66,11 +66,12 @@ pub fn definition_at(
             return Ok(Value::Null);
         };
         let Some((_, found)) = members_at(&modules, node, byte) else { return Ok(Value::Null) };
-        let places = found.iter().map(|member| member.place);
-        return Ok(places.filter_map(|span| server.location(&modules, span)).collect());
+        let places = server.places(&modules.sources);
+        return Ok(found.iter().filter_map(|member| places.location(member.place)).collect());
     };
-    let places = modules.declarations(symbol);
-    Ok(places.into_iter().filter_map(|span| server.location(&modules, span)).collect())
+    let places = server.places(&modules.sources);
+    let declarations = modules.declarations(symbol);
+    Ok(declarations.into_iter().filter_map(|span| places.location(span)).collect())
 }
 
 /// `textDocument/references`.
@@ -88,9 +89,10 @@ pub fn references_at(
     for package in server.shared_symbol(&root, &modules, symbol).packages {
         let modules = &package.modules;
         let declarations = modules.declarations(package.symbol);
-        let places = package.references().into_iter();
-        let places = places.filter(|span| declared != Some(false) || !declarations.contains(span));
-        found.extend(places.filter_map(|span| server.location(modules, span)));
+        let spans = package.references().into_iter();
+        let spans = spans.filter(|span| declared != Some(false) || !declarations.contains(span));
+        let places = server.places(&modules.sources);
+        found.extend(spans.filter_map(|span| places.location(span)));
     }
     Ok(Value::Array(found))
 }
@@ -179,17 +181,17 @@ pub fn rename_symbol(
     }
     shared.refuse_unread(&old)?;
     refuse_clashes(&shared, &old, &new)?;
-    let places = shared.packages.iter().flat_map(|package| {
-        let sources = &package.modules.sources;
-        let places = package.references().into_iter().filter_map(|span| {
-            let text: &str = &sources.get(span.source).text;
-            let name = last_name(text, span);
-            let uri = || report::address_of(sources, span.source, &*server.library);
-            (sources.text(name) == old).then(|| (uri(), text, name.range()))
-        });
-        places.collect::<Vec<_>>()
+    let packages = shared.packages.iter();
+    let packages: Vec<_> =
+        packages.map(|package| (package, server.places(&package.modules.sources))).collect();
+    let spans = packages.iter().flat_map(|(package, places)| {
+        let sources = places.sources;
+        let spans = package.references().into_iter();
+        let names = spans.map(|span| last_name(&sources.get(span.source).text, span));
+        let old = names.filter(|name| sources.text(*name) == old);
+        old.map(|name| (places, name)).collect::<Vec<_>>()
     });
-    report::rename_json(&new, places)
+    report::rename_json(&new, spans)
 }
 
 /// Fails where the new name would change what a place means.
@@ -308,12 +310,13 @@ pub fn workspace_symbols(
             found.extend(glsl::workspace_symbols(server, &whole, &query, most));
         }
         let Some(modules) = server.modules(&root) else { continue };
+        let places = server.places(&modules.sources);
         for node in &modules.graph.nodes {
             for item in node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE) {
                 let name = modules.graph.names.text(item.name);
                 let span = node.module.span(item.name_range.clone());
                 if found.len() < SYMBOLS && name.to_lowercase().contains(&query) {
-                    let place = server.location(&modules, span);
+                    let place = places.location(span);
                     found.extend(place.map(|location| {
                         json!({
                             "name": name,

@@ -9,11 +9,11 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::look::{is_module, module_problems, module_settings};
-use super::report::{self, LibraryAddress};
+use super::places::Places;
 use super::wire::notification_message;
-use super::{Document, LanguageServer, inactive, place};
-use lamplight_diagnostic::source::{SourceId, SourceSet};
-use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity};
+use super::{Document, LanguageServer, inactive, place, report};
+use lamplight_diagnostic::source::SourceSet;
+use lamplight_diagnostic::{Diagnostics, Severity};
 use lamplight_files::limits::EDITOR_FILES;
 use lamplight_lint::EXTENSIONS;
 
@@ -114,25 +114,26 @@ impl LanguageServer {
         is_open: bool,
     ) -> (Found, Option<BTreeSet<String>>) {
         let analysis = self.analyse(document, is_open);
-        let (sources, library) = (&analysis.sources, &*self.library);
+        let places = Places::new(&analysis.sources, &*self.library);
         let mut found = Found::new();
         let mut show = |address: &str, diagnostic: Value| {
             found.entry(address.to_owned()).or_default().push(diagnostic);
         };
         for problem in &analysis.problems {
             let note = analysis.note.as_deref();
-            match shown_at(sources, problem, library) {
-                Some((_, address)) => {
-                    show(&address, report::diagnostic_json(sources, problem, note, library));
+            // It is shown in the file of its first label.
+            match problem.labels.first().and_then(|first| places.address(first.span.source)) {
+                Some(address) => {
+                    show(&address, report::diagnostic_json(&places, problem, note));
                     if address != uri && is_open && problem.severity == Severity::Error {
-                        show(uri, report::pointing_json(sources, problem, &document.text, library));
+                        show(uri, report::pointing_json(&places, problem, &document.text));
                     }
                 }
                 None => show(uri, report::unplaced_json(problem, &document.text)),
             }
         }
         analysis.inactive.into_iter().for_each(|hint| show(uri, hint));
-        let read = sources.iter().map(|(_, source)| source.path.clone());
+        let read = analysis.sources.iter().map(|(_, source)| source.path.clone());
         let read = analysis.is_opened.then(|| read.collect());
         (found, read)
     }
@@ -223,16 +224,6 @@ impl Findings {
         }
         all
     }
-}
-
-/// The file where a diagnostic is shown: that of its first label.
-fn shown_at(
-    sources: &SourceSet,
-    problem: &Diagnostic,
-    library: LibraryAddress<'_>,
-) -> Option<(SourceId, String)> {
-    let id = problem.labels.first()?.span.source;
-    Some((id, report::address_of(sources, id, library)?))
 }
 
 fn message(address: &str, version: Option<&Value>, diagnostics: &[Value]) -> Value {

@@ -3,30 +3,14 @@
 use crate::failure::RequestError;
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::place::{Lines, file_address};
-use lamplight_diagnostic::source::{SourceId, SourceSet, Span};
+use super::place::Lines;
+use super::places::Places;
+use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Severity};
-
-/// Where a file of the embedded library lies on the disk.
-pub type LibraryAddress<'l> = &'l dyn Fn(&str) -> Option<PathBuf>;
-
-/// The address of a text: of a file on the disk, or of one that the library's copy has.
-pub fn address_of(
-    sources: &SourceSet,
-    id: SourceId,
-    library: LibraryAddress<'_>,
-) -> Option<String> {
-    let source = sources.get(id);
-    if !source.on_disk {
-        return Some(file_address(&library(source.path.strip_prefix("lamplight/")?)?));
-    }
-    let path = Path::new(&source.path);
-    Some(file_address(&path.canonicalize().unwrap_or_else(|_| path.to_owned())))
-}
 
 /// The answer to a hover: words about a range of a text.
 pub fn hover_json(words: &str, text: &str, range: Range<usize>) -> Value {
@@ -36,29 +20,22 @@ pub fn hover_json(words: &str, text: &str, range: Range<usize>) -> Value {
     })
 }
 
-/// The answer to a rename: the new name at ranges of texts, each with the address of its text.
-pub fn rename_json<'t>(
+/// The answer to a rename: the new name at the spans of texts.
+pub fn rename_json<'p, 's: 'p>(
     new: &str,
-    places: impl Iterator<Item = (Option<String>, &'t str, Range<usize>)>,
+    spans: impl Iterator<Item = (&'p Places<'s>, Span)>,
 ) -> Result<Value, RequestError> {
     let mut edits: BTreeMap<String, Vec<Value>> = BTreeMap::new();
-    for (uri, text, range) in places {
-        let edit = json!({ "range": Lines::new(text).range(range), "newText": new });
-        edits
-            .entry(uri.ok_or_else(|| "a place has no address".to_owned())?)
-            .or_default()
-            .push(edit);
+    for (places, span) in spans {
+        let uri = places.address(span.source).ok_or_else(|| "a place has no address".to_owned())?;
+        let edit = json!({ "range": places.range(span), "newText": new });
+        edits.entry(uri).or_default().push(edit);
     }
     Ok(json!({ "changes": edits }))
 }
 
 /// A diagnostic in the protocol's form, at its first label.
-pub fn diagnostic_json(
-    sources: &SourceSet,
-    found: &Diagnostic,
-    note: Option<&str>,
-    library: LibraryAddress<'_>,
-) -> Value {
+pub fn diagnostic_json(places: &Places<'_>, found: &Diagnostic, note: Option<&str>) -> Value {
     let mut message = found.message.clone();
     let labels = found.labels.split_first();
     let place = labels.map(|(first, _)| first).filter(|first| !first.message.is_empty());
@@ -69,10 +46,10 @@ pub fn diagnostic_json(
     }
     let others = labels.map_or(&[][..], |(_, others)| others);
     let related = others.iter().filter_map(|label| {
-        let location = location_json(sources, label.span, library)?;
+        let location = places.location(label.span)?;
         Some(json!({ "location": location, "message": label.message }))
     });
-    let range = labels.map(|(first, _)| range_json(sources, first.span));
+    let range = labels.map(|(first, _)| places.range(first.span));
     with_code(found, range.unwrap_or_default(), &message, related.collect())
 }
 
@@ -85,21 +62,16 @@ pub fn unplaced_json(found: &Diagnostic, text: &str) -> Value {
 
 /// A diagnostic of another file as it is shown in a text that depends on the file: at the import
 /// that names it, or else at the first line.
-pub fn pointing_json(
-    sources: &SourceSet,
-    found: &Diagnostic,
-    text: &str,
-    library: LibraryAddress<'_>,
-) -> Value {
+pub fn pointing_json(places: &Places<'_>, found: &Diagnostic, text: &str) -> Value {
     let (mut range, mut message, mut related) =
         (first_line(text), found.message.clone(), Vec::new());
     if let Some(label) = found.labels.first() {
-        let other = sources.get(label.span.source);
-        let (line, _) = Lines::new(&other.text).units(label.span.start as usize);
+        let other = places.sources.get(label.span.source);
+        let line = places.line(label.span);
         let name = Path::new(&other.path).file_name().unwrap_or_default().to_string_lossy();
         message = format!("{message}\nin `{name}`, line {}", line + 1);
         range = import_of(text, Path::new(&other.path)).unwrap_or(range);
-        let location = location_json(sources, label.span, library);
+        let location = places.location(label.span);
         related.extend(
             location.map(|location| json!({ "location": location, "message": label.message })),
         );
@@ -109,15 +81,6 @@ pub fn pointing_json(
 
 fn notes(found: &Diagnostic) -> impl Iterator<Item = &str> {
     found.notes.iter().map(String::as_str)
-}
-
-fn range_json(sources: &SourceSet, span: Span) -> Value {
-    Lines::new(&sources.get(span.source).text).range(span.range())
-}
-
-fn location_json(sources: &SourceSet, span: Span, library: LibraryAddress<'_>) -> Option<Value> {
-    let uri = address_of(sources, span.source, library)?;
-    Some(json!({ "uri": uri, "range": range_json(sources, span) }))
 }
 
 fn with_code(found: &Diagnostic, range: Value, message: &str, related: Vec<Value>) -> Value {

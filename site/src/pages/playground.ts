@@ -18,6 +18,7 @@ import type { Moment } from "../parts/lines";
 import { Listed } from "../parts/listed";
 import { Sketch } from "../parts/sketch";
 import { showValues, values } from "../parts/values";
+import { wrapping } from "../parts/wrapping";
 
 /** Milliseconds after which the page says that it still computes. */
 const PATIENCE = 1000;
@@ -63,7 +64,7 @@ export async function page(into: HTMLElement, given?: Project) {
         doc: state.files[state.open] ?? "",
         extensions: [
             // Bidirectional formatting characters and control characters are seen, so that a text reads as it is.
-            highlightSpecialChars(), lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), values, EditorView.lineWrapping, known(state),
+            highlightSpecialChars(), lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), values, wrapping, known(state),
             EditorView.contentAttributes.of({ "aria-label": `Text of ${state.open}`, "aria-describedby": "leaving" }),
             EditorState.transactionFilter.of((change) => {
                 // Files that are too large already can be made smaller.

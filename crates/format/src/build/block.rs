@@ -216,7 +216,7 @@ impl Builder<'_> {
                 token.breaks == 0
                     && !token.ends_line()
                     && !self.is_mark(at, "{")
-                    && !(token.kind == Kind::Word && self.is_control(at))
+                    && (token.kind != Kind::Word || !self.is_control(at))
             })
             && !self.text[self.tokens[open].start as usize..self.tokens[close].end as usize]
                 .contains(is_line_break)

@@ -255,11 +255,12 @@ impl Builder<'_> {
         let mut index = start;
         while index < end && self.breaks(index) == 0 {
             let token = &self.tokens[index];
-            let is_simple = !token.is_comment()
-                && !token.begins_line()
-                && !self.is_mark(index, "@")
-                && !(self.is_word(index) && self.is_control(index));
-            if !is_simple {
+            let is_label_or_block = self.is_word(index) && self.is_control(index);
+            if token.is_comment()
+                || token.begins_line()
+                || self.is_mark(index, "@")
+                || is_label_or_block
+            {
                 break;
             }
             let Extent::Semicolon(at) = self.extent(index, end) else { break };

@@ -511,10 +511,8 @@ impl Writer<'_> {
             {
                 uses.indexed.extend(open_index(expr));
             }
-            ExprKind::Construct(parts) => {
-                if expr.ty.is_opaque() {
-                    uses.indexed.extend(parts.iter().filter_map(open_index));
-                }
+            ExprKind::Construct(parts) if expr.ty.is_opaque() => {
+                uses.indexed.extend(parts.iter().filter_map(open_index));
             }
             _ => {}
         }

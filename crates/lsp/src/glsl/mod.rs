@@ -26,6 +26,7 @@ use super::{LanguageServer, hover, navigate, report};
 use lamplight_bundle::Language;
 use lamplight_compose::project::LIBRARY;
 use lamplight_compose::resolve::{Graph, ROOT, glsl};
+use lamplight_diagnostic::source::Span;
 use lamplight_lint as lint;
 use lamplight_permute::axis::Axis;
 use lamplight_syntax::wesl::ItemKind;
@@ -63,11 +64,9 @@ impl OpenGlslFile {
         Some(&self.opened.packages.package(number).name)
     }
 
-    fn location(&self, server: &LanguageServer, file: usize, range: &Range<u32>) -> Option<Value> {
-        let module = &self.names.graph.modules[file];
-        let uri = report::address_of(&self.opened.sources, module.source, &*server.library)?;
-        let range = Lines::new(&module.text).range(range.start as usize..range.end as usize);
-        Some(json!({ "uri": uri, "range": range }))
+    fn span(&self, file: usize, range: &Range<u32>) -> Span {
+        let source = self.names.graph.modules[file].source;
+        Span { source, start: range.start, end: range.end }
     }
 
     /// The description of a declaration that is an item of the library.
@@ -175,8 +174,9 @@ pub fn definition_at(
         NameMeaning::File(file) => vec![(file, 0..0)],
         NameMeaning::Macro(_) => Vec::new(),
     };
-    let found = places.iter().filter_map(|(file, place)| requested.location(server, *file, place));
-    Ok(found.collect())
+    let texts = server.places(&requested.opened.sources);
+    let spans = places.iter().map(|(file, place)| requested.span(*file, place));
+    Ok(spans.filter_map(|span| texts.location(span)).collect())
 }
 
 /// `textDocument/documentSymbol`.

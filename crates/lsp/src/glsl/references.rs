@@ -13,11 +13,11 @@ use super::outline::{GlslDeclaration, SymbolKind};
 use super::units::{Meant, NamePlace, Units};
 use super::{read_names, symbol_kind, text_of};
 use crate::package::OpenedPackage;
-use crate::place::Lines;
-use crate::{LanguageServer, hover, report};
+use crate::{LanguageServer, hover};
 use lamplight_catalogue as catalogue;
 use lamplight_compose::project::LIBRARY;
 use lamplight_compose::resolve::{ROOT, glsl};
+use lamplight_diagnostic::source::Span;
 use lamplight_syntax::glsl::Symbol;
 
 /// Extensions of the files that are read even if no file includes them.
@@ -76,11 +76,19 @@ impl Whole {
         Path::new(&self.units.names.graph.paths[file]).canonicalize().ok()
     }
 
-    pub fn location(&self, server: &LanguageServer, place: &NamePlace) -> Option<Value> {
-        let module = self.units.module(place.file);
-        let uri = report::address_of(&self.opened.sources, module.source, &*server.library)?;
-        let range = Lines::new(&module.text).range(place.start as usize..place.end as usize);
-        Some(json!({ "uri": uri, "range": range }))
+    /// The locations of places, those that have one.
+    fn locations<'p>(
+        &self,
+        server: &LanguageServer,
+        places: impl Iterator<Item = &'p NamePlace>,
+    ) -> Vec<Value> {
+        let texts = server.places(&self.opened.sources);
+        places.filter_map(|place| texts.location(self.span(place))).collect()
+    }
+
+    pub fn span(&self, place: &NamePlace) -> Span {
+        let source = self.units.module(place.file).source;
+        Span { source, start: place.start, end: place.end }
     }
 
     fn is_of_library(&self, file: usize) -> bool {
@@ -102,11 +110,10 @@ pub fn references_at(
     let (all, declarations) = requested.whole.units.places(&requested.meant, requested.file);
     let places =
         all.iter().filter(|place| declared != Some(false) || !declarations.contains(place));
-    let mut found: Vec<Value> =
-        places.take(PLACES).filter_map(|place| requested.whole.location(server, place)).collect();
+    let mut found = requested.whole.locations(server, places.take(PLACES));
     let (dependents, _) = places_of_dependents(server, &requested, &declarations);
     for (whole, places) in dependents {
-        found.extend(places.iter().take(PLACES).filter_map(|place| whole.location(server, place)));
+        found.extend(whole.locations(server, places.iter().take(PLACES)));
     }
     Ok(Value::Array(found))
 }
@@ -162,7 +169,7 @@ fn including_places(
     let Some(file) = whole.file(&path) else { return Ok(None) };
     let Some(included) = whole.units.included_at(file, byte as u32) else { return Ok(None) };
     let places = whole.units.includes_of(included);
-    Ok(Some(places.iter().filter_map(|place| whole.location(server, place)).collect()))
+    Ok(Some(Value::Array(whole.locations(server, places.iter()))))
 }
 
 /// At most `most` names of all files that contain the query, for `workspace/symbol`.
@@ -173,6 +180,7 @@ pub fn workspace_symbols(
     most: usize,
 ) -> Vec<Value> {
     let mut found = Vec::new();
+    let places = server.places(&whole.opened.sources);
     let units = &whole.units;
     for (file, outline) in units.names.outlines.iter().enumerate() {
         // The library's macros guard its files and give its names their prefix.
@@ -189,7 +197,7 @@ pub fn workspace_symbols(
                 continue;
             }
             let Range { start, end } = declaration.place;
-            let location = whole.location(server, &NamePlace { file, start, end });
+            let location = places.location(whole.span(&NamePlace { file, start, end }));
             found.extend(location.map(|location| {
                 json!({
                     "name": name,

@@ -44,13 +44,9 @@ pub fn rename_symbol(
     let places = renamed_places(&requested)?;
     refuse_dependents(server, &requested, &places)?;
     check_new(&requested, &places, &new)?;
-    let places = places.iter().map(|place| {
-        let module = requested.whole.units.module(place.file);
-        let uri =
-            report::address_of(&requested.whole.opened.sources, module.source, &*server.library);
-        (uri, &*module.text, place.start as usize..place.end as usize)
-    });
-    report::rename_json(&new, places)
+    let texts = server.places(&requested.whole.opened.sources);
+    let spans = places.iter().map(|place| (&texts, requested.whole.span(place)));
+    report::rename_json(&new, spans)
 }
 
 /// Every place that writes the name.

@@ -53,7 +53,7 @@ thread_local! {
 #[wasm_bindgen(js_name = keepImage)]
 pub fn keep_image(name: String, width: u32, rgba: Vec<u8>) -> bool {
     let width = width as usize;
-    let is_whole = width > 0 && !rgba.is_empty() && rgba.len() % (4 * width) == 0;
+    let is_whole = width > 0 && !rgba.is_empty() && rgba.len().is_multiple_of(4 * width);
     KEPT.with_borrow_mut(|kept| {
         let has_room = kept.len() < IMAGES || kept.contains_key(&name);
         let is_taken = is_whole && has_room && rgba.len() <= 4 * PIXELS;
