@@ -25,7 +25,7 @@ use libtest_mimic::{Failed, Trial};
 use crate::link_compare as compare;
 
 use alone::{agree, forward};
-use glsl::{constants_like_members, unused_functions};
+use glsl::{constants_like_members, derivatives_without_places, unused_functions};
 use texts::{NAMES, NAMES_MANIFEST, ROWS, ROWS_MANIFEST, TRAPS, TRAPS_MANIFEST};
 use writers::{
     blocks_beside_structures, entry_points, kept_matrices, kept_names, lacking,
@@ -40,7 +40,7 @@ type Case = (&'static str, fn() -> Outcome);
 const STEP: usize = 23;
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 24] = [
+    let cases: [Case; 25] = [
         ("marks_are_found_in_longer_names", parts::marks_are_found_in_longer_names),
         ("sets_hold_what_was_put_in", parts::sets_hold_what_was_put_in),
         ("a_fragment_is_written_with_other_names", parts::a_fragment_is_written_with_other_names),
@@ -58,6 +58,7 @@ pub fn tests() -> Vec<Trial> {
         ("an_entry_point_called_like_others", entry_points),
         ("unused_functions_of_glsl", unused_functions),
         ("constants_of_glsl_like_members", constants_like_members),
+        ("derivatives_of_glsl_without_places", derivatives_without_places),
         ("names_of_hlsl_and_glsl", kept_names),
         ("blocks_beside_structures", blocks_beside_structures),
         ("types_like_members", types_like_members),

@@ -1,5 +1,9 @@
 //! Names of GLSL in the outputs of permutations.
 
+use lamplight::bundle::{Language, Stage, Target};
+use lamplight::compose::Composed;
+use lamplight::link::{Linker, TextForms, compile};
+
 use super::{Outcome, agree, all_linked, package, units};
 
 /// A GLSL function that nothing calls does not ship, neither alone nor as the first of all.
@@ -72,4 +76,28 @@ void main() { color = shadow.tint * shaded(bias) * strength * counted(SIZE); }
         }
     }
     all_linked(&together)
+}
+
+/// A text whose places no map knows turns the rule about derivatives off in WGSL as others do, and
+/// warns of it.
+pub fn derivatives_without_places() -> Outcome {
+    const TEXT: &str = "#version 450
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 color;
+layout(set = 0, binding = 0) uniform sampler2D image;
+void main() {
+    color = vec4(0.0);
+    if (uv.x > 0.5) color = texture(image, uv);
+}
+";
+    let composed = Composed::of_text(Language::Glsl, Some(Stage::Fragment), TEXT.to_owned());
+    let text = TextForms { composed: &composed, lean: &composed };
+    let targets = [Target::WGSL];
+    let made = compile(&text, "main", &targets, &Linker::new(&targets))
+        .map_err(|problems| format!("{problems:?}"))?;
+    let wgsl = String::from_utf8_lossy(&made.unit.targets["wgsl"].bytes).into_owned();
+    assert!(wgsl.contains("diagnostic(off, derivative_uniformity);"), "{wgsl}");
+    let codes: Vec<&str> = made.warnings.iter().map(|warning| warning.code.name).collect();
+    assert_eq!(codes, ["non-uniform-derivative"]);
+    Ok(())
 }

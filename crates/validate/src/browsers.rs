@@ -23,25 +23,25 @@ pub fn has_lints(composed: &Composed) -> bool {
 }
 
 /// The derivatives of a text in GLSL that are taken in non-uniform control flow, by its translation. GPUs
-/// give undefined results there, and GLSL allows it.
+/// give undefined results there, and GLSL allows it. One whose place the text's map does not know has no
+/// label.
 pub fn lint_derivatives(wgsl: &Composed) -> Diagnostics {
     let problems = on_large_stack(|| rules::check(&wgsl.text));
     let derivatives = problems.iter().filter(|problem| problem.rule == Rule::Derivative);
-    derivatives.filter_map(|problem| derivative_of_glsl(wgsl, problem)).collect()
+    derivatives.map(|problem| derivative_of_glsl(wgsl, problem)).collect()
 }
 
 /// Everything that a lint reports of a text in GLSL, by its translation.
 pub fn lint_translation(wgsl: &Composed) -> Diagnostics {
     let problems = on_large_stack(|| rules::check(&wgsl.text));
     let described = problems.iter().filter_map(|problem| match problem.rule {
-        Rule::Derivative => derivative_of_glsl(wgsl, problem),
+        Rule::Derivative => Some(derivative_of_glsl(wgsl, problem)),
         _ => describe(wgsl, problem, false),
     });
     described.collect()
 }
 
-fn derivative_of_glsl(wgsl: &Composed, problem: &Problem) -> Option<Diagnostic> {
-    let place = wgsl.map.lookup(problem.place.range())?;
+fn derivative_of_glsl(wgsl: &Composed, problem: &Problem) -> Diagnostic {
     let text = wgsl.text.get(problem.place.range()).unwrap_or_default();
     let (what, help) = match text.starts_with("textureSample") {
         true => (
@@ -51,8 +51,9 @@ fn derivative_of_glsl(wgsl: &Composed, problem: &Problem) -> Option<Diagnostic> 
         false => ("a derivative", "help: take it before the branch"),
     };
     let message = format!("{what} in non-uniform control flow");
-    let warning = Diagnostic::warning(codes::NON_UNIFORM_DERIVATIVE, message)
-        .at(place, "other fragments of the quad may skip this branch");
+    let warning = Diagnostic::warning(codes::NON_UNIFORM_DERIVATIVE, message);
+    let Some(place) = wgsl.map.lookup(problem.place.range()) else { return warning.note(help) };
+    let warning = warning.at(place, "other fragments of the quad may skip this branch");
     let cause = problem.notes.first().and_then(|(cause, _)| wgsl.map.lookup(cause.range()));
     // A place is that of a statement, and so is its cause: the condition of a branch is in the same one.
     let is_apart = |cause: &Span| {
@@ -62,7 +63,7 @@ fn derivative_of_glsl(wgsl: &Composed, problem: &Problem) -> Option<Diagnostic> 
         Some(cause) => warning.at(cause, "differs between fragments"),
         None => warning,
     };
-    Some(warning.note(help))
+    warning.note(help)
 }
 
 /// How a rule is reported.

@@ -7,6 +7,10 @@ const ALWAYS: &[&str] = &[
     "asm",
     "cast",
     "class",
+    "double",
+    "dvec2",
+    "dvec3",
+    "dvec4",
     "enum",
     "extern",
     "external",
@@ -42,19 +46,17 @@ const ALWAYS: &[&str] = &[
 const SINCE_140: &[&str] = &["active", "common", "filter", "partition", "superp"];
 
 /// Keywords of GLSL 4.00 and reserved words of GLSL ES 3.00.
-const SINCE_400: &[&str] = &[
-    "dmat2",
-    "dmat3",
-    "dmat4",
-    "double",
-    "dvec2",
-    "dvec3",
-    "dvec4",
-    "patch",
-    "precise",
-    "sample",
-    "subroutine",
-];
+const SINCE_400: &[&str] =
+    &["dmat2", "dmat3", "dmat4", "patch", "sample", "samplerCubeArray", "subroutine"];
+
+/// Keywords of GLSL 4.00 and of GLSL ES 3.20, where 3.10 has extensions for it.
+const PRECISE: &[&str] = &["precise"];
+
+/// Keywords of GLSL 4.30 and of GLSL ES 3.10.
+const STORAGE: &[&str] = &["buffer", "shared"];
+
+/// A keyword since GLSL 1.20, and always of GLSL ES.
+const INVARIANT: &[&str] = &["invariant"];
 
 /// Keywords of GLSL 4.20, and reserved words of GLSL ES 3.00.
 const SINCE_420: &[&str] = &["atomic_uint", "resource"];
@@ -80,7 +82,6 @@ const KEYWORDS: &[&str] = &[
     "in",
     "inout",
     "int",
-    "invariant",
     "ivec2",
     "ivec3",
     "ivec4",
@@ -158,7 +159,7 @@ const MODERN: &[&str] = &[
     "uvec4",
 ];
 
-/// Keywords of GLSL 4.20 that begin with a letter for the kind of their numbers, or with none.
+/// Keywords of GLSL 4.20, and reserved since 1.30, that begin with a letter for the kind of their numbers, or with none.
 const IMAGES: &[&str] =
     &["image1D", "image1DArray", "image2D", "image2DArray", "image3D", "imageBuffer", "imageCube"];
 
@@ -170,25 +171,26 @@ const ACCESSES: &[&str] = &["coherent", "readonly", "restrict", "writeonly"];
 
 /// Whether a version keeps a word for itself: no declaration may have it as its name.
 pub(super) fn is_reserved(word: &str, version: Version) -> bool {
-    let since = |desktop: u32| if version.es { 300 } else { desktop };
+    let since_or = |desktop: u32, es: u32| if version.es { es } else { desktop };
+    let since = |desktop: u32| since_or(desktop, 300);
     let lists = [
         (ALWAYS, 0),
         (KEYWORDS, 0),
-        (SINCE_130, if version.es { 100 } else { 130 }),
+        (INVARIANT, since_or(120, 100)),
+        (SINCE_130, since_or(130, 100)),
         (MODERN, since(140)),
         (SINCE_140, since(140)),
         (SINCE_400, since(400)),
         (SINCE_420, since(420)),
         (ACCESSES, since(420)),
+        (PRECISE, since_or(400, 310)),
+        (STORAGE, since_or(430, 310)),
     ];
-    // What GLSL ES 3.00 takes from GLSL 4.00, version 1.00 has too.
-    let is_double = version.es && SINCE_400.contains(&word) && word.starts_with('d');
     // A word of layouts since version 1.40.
-    let is_packed = word == "packed" && version.number < if version.es { 300 } else { 140 };
-    let of_numbers = [(IMAGES, since(420)), (SAMPLES, since(150))];
+    let is_packed = word == "packed" && version.number < since(140);
+    let of_numbers = [(IMAGES, since(130)), (SAMPLES, since(150))];
     let stem = word.strip_prefix(['i', 'u']);
-    is_double
-        || is_packed
+    is_packed
         || lists.iter().any(|(words, number)| version.number >= *number && words.contains(&word))
         || of_numbers.iter().any(|(words, number)| {
             let is_one = words.contains(&word) || stem.is_some_and(|stem| words.contains(&stem));
@@ -212,9 +214,24 @@ mod tests {
             assert!(is_reserved(word, version(450, false)), "{word}");
             assert!(!is_reserved(word, version(120, false)), "{word}");
         }
-        assert!(is_reserved("double", version(100, true)));
-        assert!(!is_reserved("double", version(330, false)));
-        assert!(!is_reserved("image2D", version(330, false)));
+        for word in ["double", "dvec3"] {
+            assert!(is_reserved(word, version(100, true)), "{word}");
+            assert!(is_reserved(word, version(330, false)), "{word}");
+        }
+        for (word, number) in [("sample", 400), ("precise", 400), ("buffer", 430), ("flat", 130)] {
+            assert!(is_reserved(word, version(number, false)), "{word}");
+            assert!(!is_reserved(word, version(number - 10, false)), "{word}");
+        }
+        for (word, number) in [("sample", 300), ("precise", 310), ("buffer", 310), ("smooth", 300)]
+        {
+            assert!(is_reserved(word, version(number, true)), "{word}");
+            assert!(
+                !is_reserved(word, version(if number == 310 { 300 } else { 100 }, true)),
+                "{word}"
+            );
+        }
+        assert!(!is_reserved("invariant", version(110, false)));
+        assert!(!is_reserved("image2D", version(120, false)));
         assert!(!is_reserved("colour", version(460, false)));
     }
 }

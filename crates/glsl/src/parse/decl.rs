@@ -13,10 +13,21 @@ const QUALIFIERS: &[&str] = &[
     "out",
     "inout",
     "uniform",
-    "buffer",
-    "shared",
     "attribute",
     "varying",
+    "highp",
+    "mediump",
+    "lowp",
+    "volatile",
+    "nonuniformEXT",
+    "perprimitiveEXT",
+];
+
+/// Words that stand before a type and that some versions leave to authors for names. Where one is a
+/// qualifier, a word follows it.
+const YOUNG_QUALIFIERS: &[&str] = &[
+    "buffer",
+    "shared",
     "centroid",
     "flat",
     "smooth",
@@ -25,28 +36,30 @@ const QUALIFIERS: &[&str] = &[
     "patch",
     "invariant",
     "precise",
-    "highp",
-    "mediump",
-    "lowp",
     "coherent",
-    "volatile",
     "restrict",
     "readonly",
     "writeonly",
-    "nonuniformEXT",
-    "perprimitiveEXT",
     "subroutine",
 ];
 
 /// How many sizes an array may have.
 const DIMENSIONS: usize = 8;
 
-/// Whether a word is a qualifier, `layout` included.
-pub(super) fn is_qualifier(word: &str) -> bool {
-    word == "layout" || QUALIFIERS.contains(&word)
-}
-
 impl<'a> Parser<'a, '_> {
+    /// Whether the next word is a qualifier.
+    fn is_at_qualifier(&self) -> bool {
+        let word = self.text_of(self.token());
+        QUALIFIERS.contains(&word)
+            || YOUNG_QUALIFIERS.contains(&word) && self.ahead(1).kind == Kind::Word
+    }
+
+    /// Whether the next word begins a declaration, whatever follows.
+    pub(super) fn is_at_declaration(&self) -> bool {
+        let word = self.text_of(self.token());
+        ["struct", "precision", "layout"].contains(&word) || self.is_at_qualifier()
+    }
+
     /// A declaration, with its `;` or its body.
     pub(super) fn item(&mut self) -> Res<Item<'a>> {
         if self.take(";") {
@@ -118,7 +131,7 @@ impl<'a> Parser<'a, '_> {
             if word == "layout" && self.ahead(1).kind == mark("(") {
                 self.at += 2;
                 quals.push(self.layout()?);
-            } else if QUALIFIERS.contains(&word) {
+            } else if self.is_at_qualifier() {
                 quals.push(Qual::Word(self.name()?));
             } else {
                 break;

@@ -174,8 +174,7 @@ impl<'a> Parser<'a, '_> {
         if token.kind != Kind::Word {
             return false;
         }
-        let word = self.text_of(token);
-        if word == "struct" || word == "precision" || super::decl::is_qualifier(word) {
+        if self.is_at_declaration() {
             return true;
         }
         let mut ahead = 1;

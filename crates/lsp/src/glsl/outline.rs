@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::tokens::{NestedToken, ends_of_blocks, matching_parentheses, text_tokens};
-use super::words::{QUALIFIERS, STATEMENTS};
+use super::words::{QUALIFIERS, STATEMENTS, YOUNG_QUALIFIERS};
 use lamplight_syntax::glsl::{Directive, FilePart, Module, Symbol, Symbols, TokenKind, known};
 
 /// What a declaration is.
@@ -101,12 +101,15 @@ impl OutlineReader<'_> {
 
     /// An identifier that is neither a qualifier nor begins a statement.
     fn is_name(&self, at: usize) -> bool {
-        self.tokens.get(at).is_some_and(|placed| {
-            let text = self.symbols.text(placed.token.symbol);
-            placed.token.kind == TokenKind::Identifier
-                && !QUALIFIERS.contains(&text)
-                && !STATEMENTS.contains(&text)
-        })
+        let Some(text) = self.word(at) else { return false };
+        let is_qualifier = QUALIFIERS.contains(&text)
+            || YOUNG_QUALIFIERS.contains(&text) && self.word(at + 1).is_some();
+        !is_qualifier && !STATEMENTS.contains(&text)
+    }
+
+    fn word(&self, at: usize) -> Option<&str> {
+        let token = &self.tokens.get(at)?.token;
+        (token.kind == TokenKind::Identifier).then(|| self.symbols.text(token.symbol))
     }
 
     fn place(&self, at: usize) -> Range<u32> {

@@ -3,28 +3,35 @@
 /// Qualifiers: words of a declaration that are no types.
 pub const QUALIFIERS: &[&str] = &[
     "attribute",
-    "buffer",
-    "centroid",
-    "coherent",
     "const",
-    "flat",
     "highp",
     "in",
     "inout",
-    "invariant",
     "lowp",
     "mediump",
-    "noperspective",
     "out",
+    "uniform",
+    "varying",
+    "volatile",
+];
+
+/// Qualifiers that some versions leave to authors for names. Where one is a qualifier, a word follows
+/// it.
+pub const YOUNG_QUALIFIERS: &[&str] = &[
+    "buffer",
+    "centroid",
+    "coherent",
+    "flat",
+    "invariant",
+    "noperspective",
+    "patch",
     "precise",
     "readonly",
     "restrict",
     "sample",
     "shared",
     "smooth",
-    "uniform",
-    "varying",
-    "volatile",
+    "subroutine",
     "writeonly",
 ];
 
