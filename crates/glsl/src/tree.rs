@@ -240,7 +240,7 @@ pub struct Var {
     pub layout: Layout,
     /// How it is interpolated.
     pub interpolation: Interpolation,
-    /// `readonly`, `writeonly`.
+    /// `readonly`, `writeonly`, `coherent`.
     pub access: Access,
     /// Whether anything but its initializer writes it.
     pub written: bool,
@@ -259,6 +259,8 @@ pub struct Access {
     pub readonly: bool,
     /// `writeonly`
     pub writeonly: bool,
+    /// `coherent` or `volatile`: the invocations of a stage see at once what others write.
+    pub coherent: bool,
 }
 
 /// A function.

@@ -258,15 +258,38 @@ const REFUSED: &[(Stage, &str, &str, &str)] = &[
     ),
     (
         Stage::Compute,
-        "coherent buffer B { int a; }; void main() { a = 1; }",
-        "coherent",
-        "`coherent` has no counterpart in WGSL",
+        "coherent buffer B { int a; uint b; }; void main() { a = 1; atomicAdd(b, 1u); }",
+        "B",
+        "what is `coherent` or `volatile`, and both read and written, has no counterpart in WGSL, in \
+         which only atomic functions see at once what other invocations write",
+    ),
+    (
+        Stage::Compute,
+        "layout(binding = 0, r32f) coherent uniform image2D a;
+void main() { imageStore(a, ivec2(0), imageLoad(a, ivec2(1))); }",
+        "a",
+        "what is `coherent` or `volatile`, and both read and written, has no counterpart in WGSL, in \
+         which only atomic functions see at once what other invocations write",
+    ),
+    (
+        Stage::Compute,
+        "shared volatile int a[2]; void main() { a[0] = a[1]; }",
+        "a",
+        "what is `coherent` or `volatile`, and both read and written, has no counterpart in WGSL, in \
+         which only atomic functions see at once what other invocations write",
+    ),
+    (
+        Stage::Compute,
+        "buffer B { coherent int a; }; void main() { a = 1; }",
+        "a",
+        "a `coherent` or `volatile` member has no counterpart in WGSL",
     ),
     (
         Stage::Compute,
         "volatile buffer B { int a; }; void main() { a = 1; }",
-        "volatile",
-        "`volatile` has no counterpart in WGSL",
+        "B",
+        "what is `coherent` or `volatile`, and both read and written, has no counterpart in WGSL, in \
+         which only atomic functions see at once what other invocations write",
     ),
     (
         Stage::Fragment,

@@ -145,6 +145,11 @@ impl<'a> Checker<'a> {
         for member in members {
             let quals = self.quals(&member.quals)?;
             self.check_member(member, &quals, block)?;
+            if quals.access.coherent {
+                let at = member.names.first().map_or(member.ty.at, |one| one.name.at);
+                return self
+                    .refuse(at, "a `coherent` or `volatile` member has no counterpart in WGSL");
+            }
             let base = self.spec_type(&member.ty, NO_SIZES)?;
             for declarator in &member.names {
                 let ty = self.after_name(base.clone(), &declarator.sizes)?;

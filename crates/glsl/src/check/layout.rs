@@ -186,6 +186,7 @@ impl<'a> Checker<'a> {
             "invariant" => quals.interpolation.invariant = true,
             "readonly" => quals.access.readonly = true,
             "writeonly" => quals.access.writeonly = true,
+            "coherent" | "volatile" => quals.access.coherent = true,
             "smooth" | "highp" | "mediump" | "lowp" | "precise" | "restrict" => {}
             _ => return self.refuse(at, format!("`{word}` has no counterpart in WGSL")),
         }

@@ -24,7 +24,7 @@ const QUALIFIERS: &[&str] = &[
 ];
 
 /// Words that stand before a type and that some versions leave to authors for names. Where one is a
-/// qualifier, a word follows it.
+/// qualifier, a word follows it, or the `;` behind a layout for all.
 const YOUNG_QUALIFIERS: &[&str] = &[
     "buffer",
     "shared",
@@ -50,8 +50,12 @@ impl<'a> Parser<'a, '_> {
     /// Whether the next word is a qualifier.
     fn is_at_qualifier(&self) -> bool {
         let word = self.text_of(self.token());
-        QUALIFIERS.contains(&word)
-            || YOUNG_QUALIFIERS.contains(&word) && self.ahead(1).kind == Kind::Word
+        QUALIFIERS.contains(&word) || YOUNG_QUALIFIERS.contains(&word) && self.is_before_type()
+    }
+
+    fn is_before_type(&self) -> bool {
+        let after = self.ahead(1).kind;
+        after == Kind::Word || after == mark(";")
     }
 
     /// Whether the next word begins a declaration, whatever follows.

@@ -287,22 +287,38 @@ impl Writer<'_> {
         Value::primary("workgroupBarrier()", false)
     }
 
-    fn atomic(&mut self, name: &str, arguments: &[Expr], expr: &Expr) -> Value {
+    /// The place in memory and the other values of an atomic function.
+    fn atomic_parts(&mut self, arguments: &[Expr], expr: &Expr) -> Option<(String, Vec<Value>)> {
         let effects = arguments.iter().any(|argument| has_effects(argument, self.shader));
         let target = self.settled(&arguments[0], effects);
         let Some(path) = self.path(&target) else {
             self.refuse(expr.at, "an atomic function takes a variable in memory");
-            return Value::primary("0", true);
+            return None;
         };
         let refs: Vec<&Expr> = arguments[1..].iter().collect();
         let values = self.operands(&refs);
         if *path.mem != super::memory::Mem::Atomic {
             self.refuse(arguments[0].at, "this member is not atomic in WGSL");
         }
+        Some((path.text, values))
+    }
+
+    /// An atomic function whose value nothing reads. Returns whether it has such a form.
+    pub(super) fn atomic_effect(&mut self, name: &str, arguments: &[Expr], expr: &Expr) -> bool {
+        let has_form = name.starts_with("atomic") && name != "atomicCompSwap";
+        if has_form && let Some((place, values)) = self.atomic_parts(arguments, expr) {
+            self.line(expr.at, format!("{name}(&{place}, {});", values[0].text));
+        }
+        has_form
+    }
+
+    fn atomic(&mut self, name: &str, arguments: &[Expr], expr: &Expr) -> Value {
+        let Some((place, values)) = self.atomic_parts(arguments, expr) else {
+            return Value::primary("0", true);
+        };
         let result = self.temporary();
         if name != "atomicCompSwap" {
-            let text = format!("let {result} = {name}(&{}, {});", path.text, values[0].text);
-            self.line(expr.at, text);
+            self.line(expr.at, format!("let {result} = {name}(&{place}, {});", values[0].text));
             return Value::primary(result, true);
         }
         // WGSL's exchange may fail without a reason, so it is tried again.
@@ -311,7 +327,7 @@ impl Writer<'_> {
         let tried = self.temporary();
         self.line(expr.at, format!("var {result}: {ty};"));
         let ((), body) = self.capture(|writer| {
-            let call = format!("atomicCompareExchangeWeak(&{}, {wanted}, {new})", path.text);
+            let call = format!("atomicCompareExchangeWeak(&{place}, {wanted}, {new})");
             writer.line(expr.at, format!("let {tried} = {call};"));
             writer.line(expr.at, format!("{result} = {tried}.old_value;"));
             let done = format!("{tried}.exchanged || {tried}.old_value != {wanted}");

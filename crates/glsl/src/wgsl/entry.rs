@@ -399,13 +399,17 @@ impl<'s> Writer<'s> {
     }
 
     fn plan_output(&mut self, index: u32, var: &Var, (builtin, ty): (&str, &str)) {
+        // Nothing is in an array without a size: a block declares it, and no statement has an index.
+        if matches!(var.ty, Type::Array(_, None)) {
+            return;
+        }
         self.name_slot(false, Slot::Builtin(builtin.to_owned()), &var.name);
         let name = self.var_name(index);
         self.declare_builtin(index, var);
         let (ty, value) = match (builtin, &var.ty) {
             ("clip_distances", Type::Array(_, size)) => {
                 self.clip_distances = true;
-                (format!("array<f32, {}>", size.unwrap_or(1)), name)
+                (format!("array<f32, {}>", size.unwrap_or(0)), name)
             }
             ("sample_mask", _) => (ty.to_owned(), format!("u32({name}[0])")),
             _ => (ty.to_owned(), name),

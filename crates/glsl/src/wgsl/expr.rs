@@ -372,6 +372,7 @@ impl Writer<'_> {
                 self.line(expr.at, "}");
             }
             _ if !has_effects(expr, self.shader) => {}
+            ExprKind::Builtin(name, arguments) if self.atomic_effect(name, arguments, expr) => {}
             _ => {
                 let value = self.value(expr);
                 // What is stable was evaluated by statements before.

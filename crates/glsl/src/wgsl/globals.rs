@@ -110,8 +110,38 @@ impl Writer<'_> {
         self.plan_default_block(&mut bindings);
     }
 
+    /// Whether a stage both reads and writes a variable other than by atomic functions. Only these are
+    /// coherent in WGSL.
+    fn is_incoherent(&self, index: u32, uses: &Uses) -> bool {
+        let var = self.var(index);
+        if var.access.readonly || var.access.writeonly {
+            return false;
+        }
+        match (var.place, var.ty.innermost()) {
+            (Place::Uniform, _) => {
+                // A parameter may stand for any image.
+                let is_this =
+                    |root: &u32| *root == index || matches!(self.place(*root), Place::Param(_));
+                uses.loaded.iter().any(is_this) && uses.stored.iter().any(is_this)
+            }
+            (Place::StorageBlock, Type::Struct(block)) => {
+                let mut members = 0..self.shader.structs[*block as usize].members.len() as u32;
+                let is_plain = |member| !uses.atomics.contains(&(index, Some(member)));
+                var.written && members.any(is_plain)
+            }
+            (Place::Shared, _) => var.written && !uses.atomics.contains(&(index, None)),
+            _ => false,
+        }
+    }
+
     fn plan_global(&mut self, index: u32, uses: &Uses, bindings: &mut Bindings) {
         let var = self.var(index);
+        if var.access.coherent && self.is_incoherent(index, uses) {
+            let message = "what is `coherent` or `volatile`, and both read and written, has no \
+                           counterpart in WGSL, in which only atomic functions see at once what \
+                           other invocations write";
+            self.refuse(var.at, message);
+        }
         match var.place {
             Place::UniformBlock | Place::StorageBlock => self.plan_block(index, uses, bindings),
             Place::Uniform => {
