@@ -98,8 +98,12 @@ fn warn_unversioned(
 const STAGES: &[(&str, Stage)] = &[
     ("vert", Stage::Vertex),
     ("vs", Stage::Vertex),
+    ("vsh", Stage::Vertex),
+    ("vertexshader", Stage::Vertex),
     ("frag", Stage::Fragment),
     ("fs", Stage::Fragment),
+    ("fsh", Stage::Fragment),
+    ("fragmentshader", Stage::Fragment),
     ("comp", Stage::Compute),
     ("cs", Stage::Compute),
 ];

@@ -107,6 +107,7 @@ pub static BUILTINS: &[Builtin] = &[
     input(Fragment, "gl_SampleID", "int", "sample_index", "u32"),
     input(Fragment, "gl_SampleMaskIn", "int", "sample_mask", "u32"),
     output(Fragment, "gl_FragDepth", "float", None, Meaning::Value("frag_depth", "f32")),
+    output(Fragment, "gl_FragDepthEXT", "float", None, Meaning::Value("frag_depth", "f32")),
     output(Fragment, "gl_SampleMask", "int", Some(1), Meaning::Value("sample_mask", "u32")),
     output(Fragment, "gl_FragColor", "vec4", None, Meaning::Color),
     output(Fragment, "gl_FragData", "vec4", Some(8), Meaning::Color),

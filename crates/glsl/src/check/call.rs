@@ -5,7 +5,7 @@ use crate::ast::{self, ExprKind as Ast};
 use crate::builtin::functions::{ATOMICS, BARRIERS, REFUSED, find_function};
 use crate::builtin::textures::{Access, find_texture_function, forms_of};
 use crate::lexer::At;
-use crate::tree::{Dir, Expr, ExprKind, Place, Stage};
+use crate::tree::{Dir, Expr, ExprKind, Number, Place, Stage};
 use crate::types::{FLOAT, OpaqueKind, Scalar, Type};
 
 /// One function that a call may mean.
@@ -307,20 +307,16 @@ impl<'a> Checker<'a> {
                 self.effects = true;
                 self.mark_image(&arguments[0]);
             }
-            let mut ret = form.ret;
-            if opaque.shadow && name.starts_with("shadow") {
-                ret = Type::Vector(Scalar::Float, 4);
-                let scalar =
-                    Expr { kind: ExprKind::Texture(access, arguments), ty: FLOAT, at, known: None };
-                let kind = ExprKind::Construct(vec![scalar]);
-                return Ok(Expr { kind, ty: ret, at, known: None });
+            let made = |kind, ty| Expr { kind, ty, at, known: None };
+            if opaque.shadow && name.starts_with("shadow") && !name.ends_with("EXT") {
+                // A depth is a luminance unless the program sets `GL_DEPTH_TEXTURE_MODE`.
+                let depth = made(ExprKind::Texture(access, arguments), FLOAT);
+                let vector = |size| Type::Vector(Scalar::Float, size);
+                let luminance = made(ExprKind::Construct(vec![depth]), vector(3));
+                let one = super::literal(Number::Float(1.0), at);
+                return Ok(made(ExprKind::Construct(vec![luminance, one]), vector(4)));
             }
-            return Ok(Expr {
-                kind: ExprKind::Texture(access, arguments),
-                ty: ret,
-                at,
-                known: None,
-            });
+            return Ok(made(ExprKind::Texture(access, arguments), form.ret));
         }
         if opaque.kind == OpaqueKind::Other {
             return self.refuse(at, format!("`{name}` of this type has no counterpart in WGSL"));

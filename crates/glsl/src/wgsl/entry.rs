@@ -7,7 +7,7 @@ use super::{Clip, Writer};
 use crate::builtin::variables::{Builtin, Meaning};
 use crate::lexer::At;
 use crate::program::NumberOf;
-use crate::tree::{ExprKind, Interpolation, Number, Place, Stage, Var};
+use crate::tree::{ExprKind, Interpolation, Number, Place, Shader, Stage, Var};
 use crate::types::Type;
 
 /// What the entry point takes and gives.
@@ -60,7 +60,9 @@ impl<'s> Writer<'s> {
         self.scopes.push(Default::default());
         for place in [Place::Input, Place::Output] {
             let mut next = 0;
-            let vars = shader.vars.iter().enumerate().filter(|(_, var)| var.place == place);
+            let vars = shader.vars.iter().enumerate();
+            let vars =
+                vars.filter(|(_, var)| var.place == place && !Self::is_superseded(shader, var));
             let taken = |var: &Var| {
                 let first = var.layout.location?;
                 Some(first..first.saturating_add(self.location_count(&var.ty).min(64)))
@@ -80,6 +82,16 @@ impl<'s> Writer<'s> {
         if let Some(mode) = &shader.depth_mode {
             self.facts.list.push((Fact::DepthMode(mode.clone()), At::default()));
         }
+    }
+
+    /// Whether a variable is an output that a text declares and does not write, beside `gl_FragColor` or
+    /// `gl_FragData`.
+    fn is_superseded(shader: &Shader, var: &Var) -> bool {
+        let is_color = |var: &Var| match var.place {
+            Place::Builtin(builtin) => matches!(builtin.meaning, Meaning::Color) && var.written,
+            _ => false,
+        };
+        var.place == Place::Output && !var.written && shader.vars.iter().any(is_color)
     }
 
     /// WGSL goes on after `discard`, so that loops must know of those in functions.
