@@ -155,6 +155,40 @@ fn edge_area(a: ScreenPoint, b: ScreenPoint, x: f64, y: f64) -> f64 {
     (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)
 }
 
+fn stored_depth(depth: f64, offset: f64) -> f32 {
+    (depth + offset).clamp(0.0, 1.0) as f32
+}
+
+/// An edge of a triangle, for the points of many pixels.
+struct Edge {
+    from: ScreenPoint,
+    /// What leads to its end.
+    along: [f64; 2],
+    /// Whether points on the edge are covered: it is a top or a left edge.
+    is_covered: bool,
+}
+
+impl Edge {
+    fn new(from: ScreenPoint, to: ScreenPoint) -> Self {
+        let is_covered = (from.y == to.y && to.x > from.x) || to.y < from.y;
+        Self { from, along: [to.x - from.x, to.y - from.y], is_covered }
+    }
+
+    /// The part of [`Self::area`] that the points of a row have in common.
+    fn row(&self, y: f64) -> f64 {
+        self.along[0] * (y - self.from.y)
+    }
+
+    /// The same number as that of [`edge_area`].
+    fn area(&self, row: f64, x: f64) -> f64 {
+        row - self.along[1] * (x - self.from.x)
+    }
+
+    fn has_inside(&self, area: f64) -> bool {
+        area > 0.0 || area == 0.0 && self.is_covered
+    }
+}
+
 impl Triangle {
     /// The barycentric coordinates of a point on the frame, linear in screen space.
     fn shares(&self, x: f64, y: f64) -> [f64; 3] {
@@ -170,18 +204,19 @@ impl Triangle {
         let weighted: [f64; 3] =
             std::array::from_fn(|index| shares[index] * self.points[index].inverse_w);
         let inverse_w = weighted.iter().sum::<f64>();
-        let depth = (0..3).map(|index| shares[index] * self.points[index].z).sum();
-        (weighted.map(|weight| weight / inverse_w), depth, inverse_w)
+        (weighted.map(|weight| weight / inverse_w), self.depth_of(shares), inverse_w)
+    }
+
+    /// The edges, each opposite to the corner of its number.
+    fn edges(&self) -> [Edge; 3] {
+        let [a, b, c] = self.points;
+        [Edge::new(b, c), Edge::new(c, a), Edge::new(a, b)]
     }
 
     /// Whether the triangle covers a point. A point on an edge is covered only if that is a top or
     /// a left edge.
     pub fn covers(&self, x: f64, y: f64) -> bool {
-        let [a, b, c] = self.points;
-        [(b, c), (c, a), (a, b)].into_iter().all(|(from, to)| {
-            let side = edge_area(from, to, x, y);
-            side > 0.0 || side == 0.0 && ((from.y == to.y && to.x > from.x) || to.y < from.y)
-        })
+        self.edges().iter().all(|edge| edge.has_inside(edge.area(edge.row(y), x)))
     }
 
     /// The columns and rows of a frame that the triangle may cover.
@@ -198,7 +233,12 @@ impl Triangle {
 
     /// The depth that is stored for a point, with polygon offset.
     pub fn depth(&self, x: f64, y: f64, offset: f64) -> f32 {
-        (self.at(x, y).1 + offset).clamp(0.0, 1.0) as f32
+        stored_depth(self.depth_of(self.shares(x, y)), offset)
+    }
+
+    /// The depth at a point with these barycentric coordinates.
+    fn depth_of(&self, shares: [f64; 3]) -> f64 {
+        (0..3).map(|index| shares[index] * self.points[index].z).sum()
     }
 
     /// What polygon offset adds to the depth of each fragment.
@@ -231,15 +271,26 @@ impl VisibleTriangles {
     fn draw_one(&mut self, index: u32, triangle: &Triangle, state: PipelineState) {
         let [columns, rows] = triangle.bounds(self.size);
         let offset = triangle.offset(state.offset);
-        for (y, x) in rows.flat_map(|y| columns.clone().map(move |x| (y, x))) {
-            let place = (f64::from(x) + 0.5, f64::from(y) + 0.5);
-            if !triangle.covers(place.0, place.1) {
-                continue;
-            }
-            let depth = triangle.depth(place.0, place.1, offset);
-            let pixel = (y * self.size[0] + x) as usize;
-            if !state.depth_test || depth < self.depth[pixel] {
-                (self.depth[pixel], self.triangle[pixel]) = (depth, index);
+        let edges = triangle.edges();
+        let middle = |at: u32| f64::from(at) + 0.5;
+        for y in rows {
+            let row = edges.each_ref().map(|edge| edge.row(middle(y)));
+            let areas = |x: u32| -> [f64; 3] {
+                std::array::from_fn(|index| edges[index].area(row[index], middle(x)))
+            };
+            let is_covered = |areas: &[f64; 3]| {
+                edges.iter().zip(areas).all(|(edge, area)| edge.has_inside(*area))
+            };
+            // A triangle has no gaps in a row.
+            let covered = columns.clone().map(|x| (x, areas(x)));
+            let covered = covered.skip_while(|(_, areas)| !is_covered(areas));
+            for (x, areas) in covered.take_while(|(_, areas)| is_covered(areas)) {
+                let shares = areas.map(|area| area / triangle.area);
+                let depth = stored_depth(triangle.depth_of(shares), offset);
+                let pixel = (y * self.size[0] + x) as usize;
+                if !state.depth_test || depth < self.depth[pixel] {
+                    (self.depth[pixel], self.triangle[pixel]) = (depth, index);
+                }
             }
         }
     }
