@@ -99,7 +99,12 @@ pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
         return Err(Failure::usage("`--wesl` is for `--form cargo`"));
     }
     if arguments.package.is_some() && !matches!(arguments.form, ExportForm::Three) {
-        return Err(Failure::usage("`--package` is for `--form three`"));
+        let own = match arguments.form {
+            ExportForm::Hlsl => "; `lamplight translate FILE --to hlsl` writes one of your modules",
+            ExportForm::Metal => "; `lamplight translate FILE --to msl` writes one of your modules",
+            _ => "",
+        };
+        return Err(Failure::usage(format!("`--package` is for `--form three`{own}")));
     }
     let (name, contents) = match arguments.form {
         ExportForm::Three => return export_three(&arguments),
