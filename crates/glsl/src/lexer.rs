@@ -63,6 +63,7 @@ pub struct Lexed {
 }
 
 /// The operator or bracket of that text.
+#[inline]
 pub const fn mark(text: &str) -> Kind {
     let bytes = text.as_bytes();
     let mut padded = [0; 3];

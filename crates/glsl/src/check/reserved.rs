@@ -1,5 +1,8 @@
 //! The words that GLSL keeps for itself: no declaration may have one as its name.
 
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
 use super::Version;
 
 /// Reserved since the first versions of GLSL and of GLSL ES.
@@ -159,7 +162,8 @@ const MODERN: &[&str] = &[
     "uvec4",
 ];
 
-/// Keywords of GLSL 4.20, and reserved since 1.30, that begin with a letter for the kind of their numbers, or with none.
+/// Keywords of GLSL 4.20, and reserved since 1.30, that begin with a letter for the kind of their
+/// numbers, or with none.
 const IMAGES: &[&str] =
     &["image1D", "image1DArray", "image2D", "image2DArray", "image3D", "imageBuffer", "imageCube"];
 
@@ -169,33 +173,43 @@ const SAMPLES: &[&str] = &["sampler2DMS", "sampler2DMSArray"];
 /// How accesses to memory are qualified, since GLSL 4.20.
 const ACCESSES: &[&str] = &["coherent", "readonly", "restrict", "writeonly"];
 
+/// Words, with the first version of GLSL and of GLSL ES that keeps them.
+const LISTS: [(&[&str], [u32; 2]); 11] = [
+    (ALWAYS, [0, 0]),
+    (KEYWORDS, [0, 0]),
+    (INVARIANT, [120, 100]),
+    (SINCE_130, [130, 100]),
+    (MODERN, [140, 300]),
+    (SINCE_140, [140, 300]),
+    (SINCE_400, [400, 300]),
+    (SINCE_420, [420, 300]),
+    (ACCESSES, [420, 300]),
+    (PRECISE, [400, 310]),
+    (STORAGE, [430, 310]),
+];
+
+/// The same of words that may begin with a letter for the kind of their numbers.
+const OF_NUMBERS: [(&[&str], [u32; 2]); 2] = [(IMAGES, [130, 300]), (SAMPLES, [150, 300])];
+
+/// The versions of all words.
+static VERSIONS: LazyLock<HashMap<String, [u32; 2]>> = LazyLock::new(|| {
+    let plain = LISTS
+        .iter()
+        .flat_map(|(words, since)| words.iter().map(move |word| ((*word).to_owned(), *since)));
+    let of_numbers = OF_NUMBERS.iter().flat_map(|(words, since)| {
+        let forms = |word: &&str| ["", "i", "u"].map(|letter| format!("{letter}{word}"));
+        words.iter().flat_map(forms).map(move |word| (word, *since))
+    });
+    plain.chain(of_numbers).collect()
+});
+
 /// Whether a version keeps a word for itself: no declaration may have it as its name.
 pub(super) fn is_reserved(word: &str, version: Version) -> bool {
-    let since_or = |desktop: u32, es: u32| if version.es { es } else { desktop };
-    let since = |desktop: u32| since_or(desktop, 300);
-    let lists = [
-        (ALWAYS, 0),
-        (KEYWORDS, 0),
-        (INVARIANT, since_or(120, 100)),
-        (SINCE_130, since_or(130, 100)),
-        (MODERN, since(140)),
-        (SINCE_140, since(140)),
-        (SINCE_400, since(400)),
-        (SINCE_420, since(420)),
-        (ACCESSES, since(420)),
-        (PRECISE, since_or(400, 310)),
-        (STORAGE, since_or(430, 310)),
-    ];
-    // A word of layouts since version 1.40.
-    let is_packed = word == "packed" && version.number < since(140);
-    let of_numbers = [(IMAGES, since(130)), (SAMPLES, since(150))];
-    let stem = word.strip_prefix(['i', 'u']);
-    is_packed
-        || lists.iter().any(|(words, number)| version.number >= *number && words.contains(&word))
-        || of_numbers.iter().any(|(words, number)| {
-            let is_one = words.contains(&word) || stem.is_some_and(|stem| words.contains(&stem));
-            version.number >= *number && is_one
-        })
+    // A word of layouts since these versions.
+    if word == "packed" {
+        return version.number < if version.es { 300 } else { 140 };
+    }
+    VERSIONS.get(word).is_some_and(|since| version.number >= since[usize::from(version.es)])
 }
 
 #[cfg(test)]
