@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use super::compile::TextForms;
 use lamplight_bundle::Artifact;
-use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_emit::without_derivative_rule;
 use lamplight_rules::{self as rules, Problem, Rule};
@@ -30,7 +29,7 @@ pub fn fit_for_browsers(
             Rule::Barrier | Rule::Subgroup => codes::NON_UNIFORM_BARRIER,
             _ => codes::BROWSERS_REFUSE,
         };
-        return Err(vec![at_entry(text.composed, entry, Diagnostic::error(code, message))]);
+        return Err(vec![at_entry(text, entry, Diagnostic::error(code, message))]);
     }
     if !errors.is_empty() {
         artifact.bytes = Arc::from(without_derivative_rule(&written).into_bytes());
@@ -38,10 +37,9 @@ pub fn fit_for_browsers(
     Ok(())
 }
 
-/// A diagnostic about an output, at the entry point of its text.
-pub fn at_entry(composed: &Composed, entry: &str, diagnostic: Diagnostic) -> Diagnostic {
-    let function = composed.function(entry);
-    match function.and_then(|function| composed.place_of(function)) {
+fn at_entry(text: &TextForms<'_>, entry: &str, diagnostic: Diagnostic) -> Diagnostic {
+    let function = text.composed.function(entry);
+    match function.and_then(|function| text.composed.place_of(function)) {
         Some(span) => diagnostic.at(span, "in this entry point, or in what it calls"),
         None => diagnostic,
     }

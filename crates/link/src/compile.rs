@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::browsers::{at_entry, fit_for_browsers};
+use super::browsers::fit_for_browsers;
 use super::{Linked, Linker, Reason};
 use lamplight_bundle::{
     Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Language, Reflection,
@@ -87,16 +87,12 @@ fn compile_glsl(
     let forms = TextForms { composed, lean };
     let made = compile_wgsl(&forms, entry, targets, linker).map_err(validate::of_translations)?;
     let is_for_browsers = targets.contains(&Target::WGSL);
-    warnings.extend(derivatives.into_iter().map(|warning| {
-        let is_placed = !warning.labels.is_empty();
-        let warning = if is_placed { warning } else { at_entry(composed, entry, warning) };
-        match is_for_browsers {
-            true => warning.note(format!(
-                "the output for `{}` has `diagnostic(off, derivative_uniformity);`",
-                Target::WGSL
-            )),
-            false => warning,
-        }
+    warnings.extend(derivatives.into_iter().map(|warning| match is_for_browsers {
+        true => warning.note(format!(
+            "the output for `{}` has `diagnostic(off, derivative_uniformity);`",
+            Target::WGSL
+        )),
+        false => warning,
     }));
     warnings.extend(made.warnings);
     Ok(with_names(CompiledUnit { warnings, unit: made.unit, whole: made.whole }, &names))

@@ -23,8 +23,8 @@ pub fn has_lints(composed: &Composed) -> bool {
 }
 
 /// The derivatives of a text in GLSL that are taken in non-uniform control flow, by its translation. GPUs
-/// give undefined results there, and GLSL allows it. One whose place the text's map does not know has no
-/// label.
+/// give undefined results there, and GLSL allows it. One whose place the text's map does not know is at
+/// `main`.
 pub fn lint_derivatives(wgsl: &Composed) -> Diagnostics {
     let problems = on_large_stack(|| rules::check(&wgsl.text));
     let derivatives = problems.iter().filter(|problem| problem.rule == Rule::Derivative);
@@ -52,7 +52,10 @@ fn derivative_of_glsl(wgsl: &Composed, problem: &Problem) -> Diagnostic {
     };
     let message = format!("{what} in non-uniform control flow");
     let warning = Diagnostic::warning(codes::NON_UNIFORM_DERIVATIVE, message);
-    let Some(place) = wgsl.map.lookup(problem.place.range()) else { return warning.note(help) };
+    let main = || wgsl.place_of(wgsl.function("main")?);
+    let Some(place) = wgsl.map.lookup(problem.place.range()).or_else(main) else {
+        return warning.note(help);
+    };
     let warning = warning.at(place, "other fragments of the quad may skip this branch");
     let cause = problem.notes.first().and_then(|(cause, _)| wgsl.map.lookup(cause.range()));
     // A place is that of a statement, and so is its cause: the condition of a branch is in the same one.
