@@ -12,7 +12,7 @@ use device::Device;
 use lamplight_diagnostic::source::SourceId;
 use lamplight_glsl::translate;
 use lamplight_glsl::tree::Stage;
-use lamplight_testing::random::Random;
+use lamplight_testing::random::{Random, asked_number};
 use libtest_mimic::{Failed, Trial};
 use rayon::prelude::*;
 
@@ -32,14 +32,10 @@ pub fn tests() -> Vec<Trial> {
     ]
 }
 
-fn number_of(variable: &str, default: u64) -> u64 {
-    std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
-}
-
 /// Random programs without undefined behaviour.
 fn random_programs() -> Result<(), Failed> {
-    let first = number_of("LAMPLIGHT_GLSL_SEED", SEED);
-    let count = number_of("LAMPLIGHT_GLSL_PROGRAMS", PROGRAMS);
+    let first = asked_number("LAMPLIGHT_GLSL_SEED", SEED);
+    let count = asked_number("LAMPLIGHT_GLSL_PROGRAMS", PROGRAMS);
     println!("seed {first}: {count} programs");
     // Each thread has a device, so that no error is another one's.
     let compared = |(from, until): (u64, u64)| -> Result<Vec<String>, String> {

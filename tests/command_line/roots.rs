@@ -9,6 +9,7 @@ pub const CASES: &[Case] = &[
     ("root_without_wesl_toml", without_wesl_toml),
     ("root_outside_of_wesl_toml", outside),
     ("nearest_manifest", nearest_manifest),
+    ("own_package_in_expressions", own_package_in_expressions),
     ("names_of_files", names_of_files),
     ("folders_and_macros_of_glsl", folders_and_macros),
 ];
@@ -38,6 +39,16 @@ fn package(more: &[(&str, &str)]) -> Result<Package, libtest_mimic::Failed> {
         ("shaders/light/one.toml", CASE),
     ];
     Package::new(&[&files, more].concat())
+}
+
+/// Errors of expressions call the package of a user's what these call it.
+fn own_package_in_expressions() -> Outcome {
+    let package = package(&[])?;
+    package.run("eval package::common::half(3.0)")?.ends(0)?;
+    let missing = package.run("eval package::comon::half(3.0)")?;
+    missing.ends(1)?.says(&["there is no module `package::comon`", "`package::common`"])?;
+    let item = package.run("eval package::common::halve(3.0)")?;
+    item.ends(1)?.says(&["`package::common` has no item `halve`"]).map(drop)
 }
 
 /// The table `glsl` of the manifest counts for every command, and what it names is read again when it

@@ -84,6 +84,7 @@ export function sound(text: string, base: Project, isStrict = true): Project {
     const look = members<Look>((given.look ?? {}) as Record<string, unknown>, LOOK, "look.", isStrict);
     const names = Object.keys(given.files);
     const open = given.open !== undefined && Object.hasOwn(given.files, given.open) ? given.open : names[0];
-    const { files, target = base.target, expression = base.expression } = given;
+    // That of the base may call a function of its files.
+    const { files, target = base.target, expression = "1.0" } = given;
     return { files, open, target, expression, look };
 }

@@ -17,6 +17,7 @@ use naga::{Expression, Handle, ScalarKind, Statement};
 use super::library::{Library, lock_sources};
 use lamplight_bundle::Language;
 use lamplight_compose::Composed;
+use lamplight_compose::project::LIBRARY;
 use lamplight_diagnostic::source::{SourceId, SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_execute::Session;
@@ -71,6 +72,19 @@ pub fn evaluate_expression(
     CompiledExpression::new(library, sources, text, language)?.value(session)
 }
 
+/// An error that calls a user's package as expressions do, `package`, whatever its name among others is.
+fn with_package(mut error: Diagnostic, library: &Library) -> Diagnostic {
+    if library.name() == LIBRARY {
+        return error;
+    }
+    let name = format!("`{}::", library.name());
+    let labels = error.labels.iter_mut().map(|label| &mut label.message);
+    for text in std::iter::once(&mut error.message).chain(labels).chain(&mut error.notes) {
+        *text = text.replace(&name, "`package::");
+    }
+    error
+}
+
 /// An expression as a kernel, which any number of executors can run.
 pub struct CompiledExpression {
     pub kernel: Kernel,
@@ -93,6 +107,7 @@ impl CompiledExpression {
                 errors
                     .into_iter()
                     .map(|error| relocate_labels(error, &lock_sources(sources), &wrapper, id))
+                    .map(|error| with_package(error, library))
                     .collect::<Vec<_>>()
             })?;
         let span = Span::new(id, 0..text.len());
